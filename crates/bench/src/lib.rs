@@ -1,0 +1,1 @@
+//! The virtual bench: protocols, true mechanisms, sensors.

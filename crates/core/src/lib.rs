@@ -1,0 +1,7 @@
+//! What the files of the toolchain mean: recordings, muscle, force model, artifacts.
+//!
+//! Conventions: SI inside; pressure is gauge; force is tension, positive when the muscle pulls; the
+//! contraction ratio is positive when the muscle is shortened. Nothing here prints, reads a clock or
+//! draws random numbers.
+
+pub mod muscle;

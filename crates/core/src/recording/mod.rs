@@ -1,0 +1,38 @@
+//! Recordings: what a bench wrote, repaired where that is unambiguous, in SI.
+//!
+//! A recording is four columns (time, pressure, length, force) and, where logged, temperature. The columns
+//! live in [`Samples`], in chunks, so that a recording may be larger than memory; everything that walks
+//! over it takes one chunk at a time. A gap in time splits a recording into [segments](Recording::segments):
+//! no filter, derivative or memory runs across one.
+
+mod error;
+mod header;
+mod read;
+mod repair;
+mod samples;
+mod units;
+
+pub use error::{ReadError, ReadErrorKind};
+pub use header::{Calibration, Columns, FixedChannel, OptionSyntaxError, Quantity};
+pub use read::{ReadOptions, read_recording};
+pub use repair::Repairs;
+pub use samples::{CHUNK_ROWS, Chunk, Samples};
+
+use std::ops::Range;
+
+/// One recording as read.
+#[derive(Debug)]
+pub struct Recording {
+    /// Path as given on the command line; `-` for standard input.
+    pub path: String,
+    /// SHA-256 of the file's bytes as they lie on the disk (compressed where it is compressed), hexadecimal.
+    pub sha256: String,
+    /// The columns, in SI.
+    pub samples: Samples,
+    /// Stretches without a gap in time, as ranges of rows; together they cover all rows.
+    pub segments: Vec<Range<usize>>,
+    /// What was repaired or left out while reading.
+    pub repairs: Repairs,
+    /// Names of the columns that are kept out of the way.
+    pub ignored_columns: Vec<String>,
+}

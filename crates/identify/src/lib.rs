@@ -1,0 +1,1 @@
+//! Recordings and a force model in, parameters with uncertainty out.

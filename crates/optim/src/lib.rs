@@ -1,0 +1,1 @@
+//! Particle swarm and least squares over plain slices; knows no muscle.
