@@ -1,0 +1,3 @@
+//! Record a protocol on a virtual bench.
+
+fn main() {}
