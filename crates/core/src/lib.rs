@@ -4,4 +4,5 @@
 //! contraction ratio is positive when the muscle is shortened. Nothing here prints, reads a clock or
 //! draws random numbers.
 
+pub mod force;
 pub mod muscle;

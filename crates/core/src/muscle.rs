@@ -259,8 +259,8 @@ impl MuscleFile {
     /// # Errors
     /// [`MuscleError`] names the file, and the key or the line, and what to do.
     pub fn read(path: &Path) -> Result<Self, MuscleError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|reason| MuscleError::Read { path: path.to_owned(), reason })?;
+        let text =
+            std::fs::read_to_string(path).map_err(|reason| MuscleError::Read { path: path.to_owned(), reason })?;
         Self::parse(&text, path)
     }
 

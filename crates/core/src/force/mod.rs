@@ -1,0 +1,218 @@
+//! The base force model, eq. 11, term by term.
+//!
+//! ```text
+//! F = F_gas(p, ε; k₁, k₂) + k₃ + V_r dW/dL - F_braid(p, L) - s (f' p π D L + (f_ss / S_scale) S p)
+//! ```
+//!
+//! with the gauge pressure `p` and the direction of motion `s` (+1 contracting, -1 extending; see
+//! [`direction`](crate::direction)). One term is one file: [`gas`], [`bladder`], [`braid`],
+//! [`rubber_friction`], [`strand_friction`]. [`Form::AsPrinted`] is the same sum as the paper prints it.
+//! [`columns`] writes either as a sum of columns with weights, which is what a fit sees.
+
+pub mod bladder;
+pub mod braid;
+pub mod columns;
+pub mod gas;
+pub mod rubber_friction;
+pub mod strand_friction;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::muscle::Muscle;
+
+/// How eq. 11 is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Form {
+    /// Rubber resists contraction, strand tension from equilibrium, friction by the motion of the braid.
+    Corrected,
+    /// As the paper prints it: rubber helps contraction, strand tension too large by `2 n`, friction by
+    /// the sign of the pressure's change.
+    AsPrinted,
+}
+
+impl Form {
+    /// Sign of the bladder term in the sum.
+    pub fn bladder_sign(self) -> f64 {
+        match self {
+            Self::Corrected => 1.0,
+            Self::AsPrinted => -1.0,
+        }
+    }
+}
+
+/// A parameter of eq. 11 that a fit may find.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Parameter {
+    /// `k₁`: gain of the gas term.
+    K1,
+    /// `k₂`: contraction gain of the gas term.
+    K2,
+    /// `k₃`: constant force, in N.
+    K3,
+    /// `C₁₀`, in Pa.
+    C10,
+    /// `C₀₁`, in Pa.
+    C01,
+    /// `1/E`, in 1/Pa; a fit sees the compliance, in which the force is nearly linear.
+    StrandCompliance,
+    /// `f'`.
+    RubberFriction,
+    /// `f_ss / S_scale`.
+    StrandFriction,
+}
+
+impl Parameter {
+    /// Every parameter, in the order of the vector `theta`.
+    pub const ALL: [Self; 8] = [
+        Self::K1,
+        Self::K2,
+        Self::K3,
+        Self::C10,
+        Self::C01,
+        Self::StrandCompliance,
+        Self::RubberFriction,
+        Self::StrandFriction,
+    ];
+
+    /// Position in the vector `theta`.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// Values of the eight parameters, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BaseParameters {
+    /// Values in the order of [`Parameter::ALL`].
+    pub theta: [f64; 8],
+}
+
+impl BaseParameters {
+    /// The value of one parameter.
+    pub fn of(&self, parameter: Parameter) -> f64 {
+        self.theta[parameter.index()]
+    }
+}
+
+/// The terms of eq. 11 at one instant, in N; their sum is [`Terms::force_n`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Terms {
+    /// Gas on the braid.
+    pub gas_n: f64,
+    /// `k₃`.
+    pub offset_n: f64,
+    /// Bladder, with the sign of the form.
+    pub bladder_n: f64,
+    /// Stretch of the strands; a loss, negative.
+    pub braid_n: f64,
+    /// Friction, opposed to the direction of motion.
+    pub friction_n: f64,
+}
+
+impl Terms {
+    /// Force of the muscle.
+    pub fn force_n(&self) -> f64 {
+        self.gas_n + self.offset_n + self.bladder_n + self.braid_n + self.friction_n
+    }
+}
+
+/// Eq. 11 for one muscle with values for its parameters.
+#[derive(Debug, Clone)]
+pub struct ForceModel {
+    form: Form,
+    parameters: BaseParameters,
+    muscle: Muscle,
+    gas: gas::Gas,
+    bladder: bladder::Bladder,
+    braid: braid::Braid,
+    contact: strand_friction::StrandContact,
+}
+
+impl ForceModel {
+    /// The model of `muscle`; `strand_modulus_pa` serves the contact between strands alone.
+    pub fn new(muscle: &Muscle, strand_modulus_pa: f64, form: Form, parameters: BaseParameters) -> Self {
+        Self {
+            form,
+            parameters,
+            muscle: muscle.clone(),
+            gas: gas::Gas::new(muscle),
+            bladder: bladder::Bladder::new(muscle),
+            braid: braid::Braid::new(muscle, form),
+            contact: strand_friction::StrandContact::new(muscle, strand_modulus_pa),
+        }
+    }
+
+    /// Muscle that the model describes.
+    pub fn muscle(&self) -> &Muscle {
+        &self.muscle
+    }
+
+    /// How eq. 11 is written.
+    pub fn form(&self) -> Form {
+        self.form
+    }
+
+    /// Values of the parameters.
+    pub fn parameters(&self) -> &BaseParameters {
+        &self.parameters
+    }
+
+    /// The terms at gauge pressure, length and direction (+1 contracting, -1 extending, 0 neither).
+    pub fn terms(&self, pressure_pa: f64, length_m: f64, direction: f64) -> Terms {
+        let [k1, k2, k3, c10_pa, c01_pa, compliance_per_pa, rubber, strand] = self.parameters.theta;
+        let diameter_m = self.muscle.diameter_m(length_m);
+        let normal_n = rubber_friction::normal_force_n(pressure_pa, diameter_m, length_m);
+        let friction_n = rubber * normal_n + strand * self.contact.force_n(pressure_pa, normal_n);
+        Terms {
+            gas_n: self.gas.force_n(pressure_pa, self.muscle.contraction_ratio(length_m), k1, k2),
+            offset_n: k3,
+            bladder_n: self.form.bladder_sign() * self.bladder.force_n(length_m, c10_pa, c01_pa),
+            braid_n: -self.braid.force_n(pressure_pa, length_m, compliance_per_pa),
+            friction_n: -direction * friction_n,
+        }
+    }
+
+    /// Force of the muscle, in N; see [`terms`](Self::terms).
+    pub fn force_n(&self, pressure_pa: f64, length_m: f64, direction: f64) -> f64 {
+        self.terms(pressure_pa, length_m, direction).force_n()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::muscle::tests::nominal;
+
+    /// Nominal values of a self-made muscle of latex and nylon.
+    pub(super) fn nominal_parameters() -> BaseParameters {
+        BaseParameters { theta: [0.9, 1.05, 2.0, 118.4e3, 105.7e3, 1.0 / 3e9, 1.2e-3, 0.0] }
+    }
+
+    #[test]
+    fn validates_against_published_forces() {
+        // 666, 370 and 167 N at 0.3 MPa and contractions of 0, 0.1 and 0.2, with friction of 15 to 19 N
+        // (the published figures count some contact between strands as well).
+        let model = ForceModel::new(&nominal(), 3e9, Form::Corrected, nominal_parameters());
+        for (contraction_ratio, expected_n) in [(0.0, 666.0), (0.1, 370.0), (0.2, 167.0)] {
+            let force_n = model.force_n(3e5, model.muscle().length_m(contraction_ratio), 0.0);
+            assert!((force_n - expected_n).abs() < 0.1 * expected_n, "ε = {contraction_ratio}: {force_n}");
+        }
+    }
+
+    #[test]
+    fn friction_lowers_the_force_while_contracting_and_raises_it_while_extending() {
+        let model = ForceModel::new(&nominal(), 3e9, Form::Corrected, nominal_parameters());
+        let at = |direction| model.force_n(3e5, 0.24, direction);
+        assert!(at(1.0) < at(0.0) && at(0.0) < at(-1.0));
+        assert!((at(1.0) + at(-1.0) - 2.0 * at(0.0)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn at_rest_without_pressure_only_the_constant_is_left() {
+        let model = ForceModel::new(&nominal(), 3e9, Form::Corrected, nominal_parameters());
+        assert!((model.force_n(0.0, 0.267, 1.0) - 2.0).abs() < 1e-6);
+    }
+}
