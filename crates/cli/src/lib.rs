@@ -1,1 +1,44 @@
-//! What the programs share.
+//! What the programs share, so that they behave alike.
+//!
+//! A program is its arguments and one function:
+//!
+//! ```no_run
+//! # #[derive(clap::Parser)] struct Args { #[command(flatten)] run: pam_cli::RunArgs, #[arg(long)] out: std::path::PathBuf }
+//! # #[derive(schemars::JsonSchema)] struct Model;
+//! use pam_cli::{Output, Verdict};
+//!
+//! fn run(args: &Args) -> anyhow::Result<Verdict> {
+//!     let console = args.run.start()?;
+//!     let out = Output::open(&args.out)?; // before computing
+//!     console.note("one line on standard error, unless --quiet");
+//!     out.commit(b"{}\n")?; // all or nothing
+//!     Ok(Verdict::Accepted)
+//! }
+//!
+//! fn main() -> std::process::ExitCode {
+//!     pam_cli::main_with_schema::<Args, Model>(run)
+//! }
+//! ```
+//!
+//! In reading order: [`main`](main()) and exit codes, options ([`RunArgs`]), what goes to standard error
+//! ([`Console`], [`Progress`]), what goes into files ([`Output`]), and what happens on Ctrl-C.
+
+mod console;
+mod exit;
+mod interrupt;
+mod nearest;
+mod output;
+mod output_error;
+mod program;
+mod run_args;
+mod target;
+mod temporary;
+
+pub use console::{Console, Progress};
+pub use exit::{Verdict, exit_code};
+pub use interrupt::start;
+pub use nearest::nearest;
+pub use output::{Output, commit_all, finish_all, write_file};
+pub use output_error::OutputError;
+pub use program::{main, main_with_schema, print_schema};
+pub use run_args::RunArgs;

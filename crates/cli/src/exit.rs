@@ -1,0 +1,83 @@
+//! Exit codes: 0 accepted, 1 finished but rejected, 2 input or usage.
+
+use std::io::Write as _;
+use std::process::ExitCode;
+
+/// What a program that ran to its end thinks of the result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Done and good: exit code 0.
+    Accepted,
+    /// Done, but it did not converge, is not explained, or misses a limit: exit code 1.
+    Rejected,
+}
+
+/// Exit code of a run; an error becomes exactly one line on standard error, `error: ` and the chain of
+/// reasons joined by `: `, and exit code 2.
+pub fn exit_code(result: anyhow::Result<Verdict>) -> ExitCode {
+    match result {
+        Ok(Verdict::Accepted) => ExitCode::SUCCESS,
+        Ok(Verdict::Rejected) => ExitCode::from(1),
+        Err(error) => usage_error(&one_line(&error)),
+    }
+}
+
+/// Prints `error: message` and gives exit code 2.
+pub(crate) fn usage_error(message: &str) -> ExitCode {
+    // Where standard error is closed too, the exit code has to do.
+    let _ = writeln!(std::io::stderr().lock(), "error: {}", flatten(message));
+    ExitCode::from(2)
+}
+
+/// The chain of reasons; one that its predecessor has already quoted is left out.
+fn one_line(error: &anyhow::Error) -> String {
+    let closed = |cause: &(dyn std::error::Error + 'static)| {
+        cause
+            .downcast_ref::<std::io::Error>()
+            .is_some_and(|reason| reason.kind() == std::io::ErrorKind::BrokenPipe && reason.get_ref().is_none())
+    };
+    if error.chain().any(closed) {
+        return "standard output was closed before everything was written".to_owned();
+    }
+    let mut line = String::new();
+    for cause in error.chain() {
+        let text = cause.to_string();
+        if line.is_empty() {
+            line = text;
+        } else if !line.ends_with(&text) {
+            line.push_str(": ");
+            line.push_str(&text);
+        }
+    }
+    line
+}
+
+/// `text` on one line: line breaks and the blanks around them become one blank.
+pub(crate) fn flatten(text: &str) -> String {
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::Context as _;
+
+    #[test]
+    fn a_chain_of_reasons_is_one_line() {
+        let error = std::io::Error::other("first\n  second\n");
+        let error = Err::<(), _>(error).context("cannot read a.csv").context("cannot identify").unwrap_err();
+        assert_eq!(flatten(&one_line(&error)), "cannot identify: cannot read a.csv: first second");
+    }
+
+    #[test]
+    fn a_reason_that_is_already_quoted_is_not_repeated() {
+        let error = anyhow::anyhow!("no such thing").context("cannot open x: no such thing");
+        assert_eq!(one_line(&error), "cannot open x: no such thing");
+    }
+
+    #[test]
+    fn a_closed_pipe_is_named() {
+        let error = anyhow::Error::from(std::io::Error::from(std::io::ErrorKind::BrokenPipe)).context("writing");
+        assert_eq!(one_line(&error), "standard output was closed before everything was written");
+    }
+}

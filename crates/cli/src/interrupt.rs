@@ -1,0 +1,51 @@
+//! Ctrl-C and termination: no temporary file stays behind, exit code 130.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+
+/// Files that outputs are working on.
+#[derive(Debug)]
+pub(crate) struct Live {
+    /// Temporaries to delete when the program is interrupted.
+    pub(crate) temporaries: BTreeSet<PathBuf>,
+    /// Targets that outputs hold, so that no two of them write to one.
+    pub(crate) targets: BTreeSet<PathBuf>,
+}
+
+static LIVE: Mutex<Live> = Mutex::new(Live { temporaries: BTreeSet::new(), targets: BTreeSet::new() });
+
+/// The registry; whoever holds it cannot be interrupted, so several renames under one lock are one step.
+pub(crate) fn live() -> MutexGuard<'static, Live> {
+    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Makes Ctrl-C, termination and hang-up delete live temporaries and exit with code 130. Calling it again
+/// does nothing.
+///
+/// Under `nohup` nothing is installed: the handler could not tell a hang-up from the other two, and would
+/// end a run that was meant to survive its terminal.
+pub fn start() {
+    static INSTALLED: Once = Once::new();
+    INSTALLED.call_once(|| {
+        if hang_up_is_ignored() {
+            return;
+        }
+        // Without a handler the system ends the program just as well; only a temporary may stay behind.
+        let _ = ctrlc::set_handler(|| {
+            let live = live();
+            for path in &live.temporaries {
+                let _ = std::fs::remove_file(path);
+            }
+            // The lock is never given back: the main thread must not create another one meanwhile.
+            std::process::exit(130);
+        });
+    });
+}
+
+/// Whether the program was started with hang-ups ignored; Linux tells, elsewhere it is taken as no.
+fn hang_up_is_ignored() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap_or("0").trim();
+    u64::from_str_radix(ignored, 16).is_ok_and(|mask| mask & 1 == 1)
+}
