@@ -7,6 +7,7 @@ use std::path::Path;
 
 use pam_cli::{Output, OutputError, commit_all, write_file};
 
+#[expect(clippy::unwrap_used, reason = "part of the tests below")]
 fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> =
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
