@@ -1,3 +1,10 @@
 //! Record a protocol on a virtual bench.
 
-fn main() {}
+mod args;
+mod run;
+
+use clap::Parser;
+
+fn main() -> std::process::ExitCode {
+    run::main(&args::Args::parse())
+}
