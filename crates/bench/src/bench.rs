@@ -170,7 +170,7 @@ impl Bench {
                 let is_row = step % u64::from(self.oversampling) == 0;
                 if leg.is_logged || is_row {
                     let (pressure_pa, length_m) = leg.state(time_s, &mut at);
-                    let mut now = Moment::at(time_s, time_s - before_s, pressure_pa, length_m, leg.length_is_held);
+                    let mut now = Moment::at(time_s, time_s - before_s, pressure_pa, length_m);
                     for mechanism in &mut chain {
                         mechanism.act(&self.muscle, &mut now);
                     }
@@ -213,7 +213,6 @@ struct Leg {
     end_s: f64,
     knots: Vec<Knot>,
     is_logged: bool,
-    length_is_held: bool,
 }
 
 impl Leg {
@@ -240,8 +239,7 @@ fn legs(command: &Command) -> Vec<Leg> {
         if let (Some(from), Some(to)) = (before, take.knots.first()) {
             let duration_s = take.pause_before_s;
             let knots = vec![Knot { time_s: 0.0, ..from }, Knot { time_s: duration_s, ..*to }];
-            let length_is_held = from.length_m == to.length_m;
-            legs.push(Leg { start_s: time_s, end_s: time_s + duration_s, knots, is_logged: false, length_is_held });
+            legs.push(Leg { start_s: time_s, end_s: time_s + duration_s, knots, is_logged: false });
             time_s += duration_s;
         }
         legs.push(Leg {
@@ -249,7 +247,6 @@ fn legs(command: &Command) -> Vec<Leg> {
             end_s: time_s + take.duration_s(),
             knots: take.knots.clone(),
             is_logged: true,
-            length_is_held: take.length_is_held(),
         });
         time_s += take.duration_s();
     }

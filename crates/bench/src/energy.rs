@@ -80,6 +80,11 @@ impl Energies {
         stiffness_n / (2.0 * self.strand_m) * stretch.squared() - pressure_pa * self.volume_m3(length, strand)
     }
 
+    /// `b / b_s - 1`: share by which the strands stretch.
+    pub(crate) fn strand_strain(&self, pressure_pa: f64, modulus_pa: f64, length_m: f64) -> f64 {
+        self.stretched_strand(pressure_pa, modulus_pa, Dual::constant(length_m)).value / self.strand_m - 1.0
+    }
+
     /// The strand length `b` that minimizes the energy.
     fn stretched_strand(&self, pressure_pa: f64, modulus_pa: f64, length: Dual) -> Dual {
         let stiffness_n = modulus_pa * self.section_m2;

@@ -18,8 +18,6 @@ pub struct Moment {
     pub time_s: f64,
     /// Time since the moment before; zero at the first.
     pub step_s: f64,
-    /// Whether the rig holds the length throughout this take, so that only the pressure moves the braid.
-    pub length_is_held: bool,
     /// Pressure at the gauge.
     pub gauge_pressure_pa: f64,
     /// Length at the drive, clamp to clamp.
@@ -36,11 +34,10 @@ pub struct Moment {
 
 impl Moment {
     /// The rig at a pressure and a length, before any mechanism has acted.
-    pub fn at(time_s: f64, step_s: f64, pressure_pa: f64, length_m: f64, length_is_held: bool) -> Self {
+    pub fn at(time_s: f64, step_s: f64, pressure_pa: f64, length_m: f64) -> Self {
         Self {
             time_s,
             step_s,
-            length_is_held,
             gauge_pressure_pa: pressure_pa,
             drive_length_m: length_m,
             muscle_pressure_pa: pressure_pa,

@@ -28,11 +28,6 @@ impl Take {
     pub fn duration_s(&self) -> f64 {
         self.knots.last().map_or(0.0, |knot| knot.time_s)
     }
-
-    /// Whether the length never moves.
-    pub fn length_is_held(&self) -> bool {
-        self.knots.windows(2).all(|pair| pair[0].length_m == pair[1].length_m)
-    }
 }
 
 /// A protocol made for one muscle.
@@ -145,7 +140,6 @@ mod tests {
         path.go_to_pressure(3e5, 1e5);
         let take = path.take(0.0);
         assert!((take.duration_s() - 7.0).abs() < 1e-12);
-        assert!(!take.length_is_held());
         assert_eq!(take.knots.last().map(|knot| (knot.pressure_pa, knot.length_m)), Some((3e5, 0.25)));
     }
 

@@ -97,7 +97,7 @@ impl Parameters {
             "strand_modulus" => (&mut self.strand_modulus_pa, 1e7, 1e15),
             "rubber_friction" => (&mut self.rubber_friction, 0.0, 0.1),
             "strand_friction" => (&mut self.strand_friction, 0.0, 100.0),
-            _ => return Err(ParameterError::unknown(name)),
+            _ => return Err(ParameterError::Unknown { name: name.to_owned() }),
         };
         if !(lowest..=highest).contains(&value) {
             return Err(ParameterError::OutOfRange { name: name.to_owned(), value, lowest, highest });
@@ -111,14 +111,10 @@ impl Parameters {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ParameterError {
     /// No parameter has this name.
-    #[error("the muscle has no parameter \"{name}\"; did you mean \"{nearest}\"? It has {}", known.join(", "))]
+    #[error("the muscle has no parameter \"{name}\"")]
     Unknown {
         /// Name asked for.
         name: String,
-        /// The name most like it.
-        nearest: &'static str,
-        /// Every name there is.
-        known: Vec<&'static str>,
     },
     /// A value that no muscle has.
     #[error("{name} = {value} is outside {lowest} to {highest}; values are in SI")]
@@ -132,13 +128,6 @@ pub enum ParameterError {
         /// Highest value accepted.
         highest: f64,
     },
-}
-
-impl ParameterError {
-    fn unknown(name: &str) -> Self {
-        let known: Vec<_> = Parameters::NAMES.iter().map(|(name, _)| *name).collect();
-        Self::Unknown { name: name.to_owned(), nearest: crate::protocol::nearest(name, &known), known }
-    }
 }
 
 /// The parts of the passive tension, in N, as a mechanism finds them.
@@ -227,6 +216,11 @@ impl TrueMuscle {
         }
     }
 
+    /// Share by which the strands stretch; past `y = 1` there is no equilibrium, and the value is negative.
+    pub fn strand_strain(&self, pressure_pa: f64, length_m: f64) -> f64 {
+        self.energies.strand_strain(pressure_pa, self.parameters.strand_modulus_pa, length_m)
+    }
+
     /// Friction of the braid while it moves, without sign, in N.
     pub fn friction_n(&self, pressure_pa: f64, length_m: f64) -> f64 {
         self.friction.force_n(pressure_pa, length_m, self.muscle.diameter_m(length_m))
@@ -302,9 +296,13 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_misspelt_parameter_is_refused_with_the_nearest_name() {
-        let message = Parameters::nominal().set("ruber_friction", 1e-3).unwrap_err().to_string();
-        assert!(message.contains("did you mean \"rubber_friction\"?"), "{message}");
+    fn a_parameter_that_does_not_exist_or_cannot_be_is_refused() {
+        let mut parameters = Parameters::nominal();
+        let unknown = ParameterError::Unknown { name: "k4".to_owned() };
+        assert_eq!(parameters.set("k4", 1.0), Err(unknown));
+        let message = parameters.set("rubber_friction", 0.5).unwrap_err().to_string();
+        assert_eq!(message, "rubber_friction = 0.5 is outside 0 to 0.1; values are in SI");
+        assert_eq!(parameters, Parameters::nominal());
     }
 
     #[test]

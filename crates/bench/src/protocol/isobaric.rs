@@ -3,8 +3,10 @@
 use super::Setting;
 use crate::path::{Path, Take};
 
-/// Speed at which pressure is changed between levels, in kPa/s on the reference muscle.
-const LEVEL_RATE_KPA_PER_S: f64 = 50.0;
+/// Rate at which pressure is changed between levels, in kPa/s on the reference muscle, however short the
+/// protocol: no level is nearer than a second to the next, so that a fit can tell that the length stood
+/// still meanwhile.
+const LEVEL_RATE_KPA_PER_S: f64 = 60.0;
 
 /// P0: vented at rest length (shortened, if slack is allowed), then three slow stretches by 2 %.
 pub(super) fn null(setting: &Setting<'_>) -> Vec<Take> {
@@ -31,7 +33,7 @@ pub(super) fn triangles(setting: &Setting<'_>) -> Vec<Take> {
         let pressure_pa = reach.pressure_pa(level_kpa);
         let Some(short_m) = reach.taut_length_m(pressure_pa, 0.21) else { continue };
         let path = path.get_or_insert_with(|| Path::from(pressure_pa, long_m));
-        path.go_to_pressure(pressure_pa, reach.pressure_pa(LEVEL_RATE_KPA_PER_S) / stretch);
+        path.go_to_pressure(pressure_pa, reach.pressure_pa(LEVEL_RATE_KPA_PER_S));
         for cycle in 1..=cycles {
             let dwell_s = if cycle == cycles { setting.pace.duration_s(10.0) } else { 0.0 };
             path.go_to_length(short_m, speed_m_per_s);
@@ -55,7 +57,7 @@ pub(super) fn rate_ladder(setting: &Setting<'_>) -> Vec<Take> {
             continue;
         };
         let path = path.get_or_insert_with(|| Path::from(pressure_pa, long_m));
-        path.go_to_pressure(pressure_pa, reach.pressure_pa(LEVEL_RATE_KPA_PER_S) / stretch);
+        path.go_to_pressure(pressure_pa, reach.pressure_pa(LEVEL_RATE_KPA_PER_S));
         for speed_mm_per_s in [0.5, 1.5, 5.0, 15.0, 50.0] {
             for _ in 0..cycles {
                 path.go_to_length(short_m, reach.distance_m(speed_mm_per_s) / stretch);

@@ -143,12 +143,10 @@ impl Default for Options {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ProtocolError {
     /// No protocol has this name.
-    #[error("there is no protocol \"{name}\"; did you mean \"{nearest}\"?")]
+    #[error("there is no protocol \"{name}\"")]
     Unknown {
         /// Name asked for.
         name: String,
-        /// The name most like it.
-        nearest: &'static str,
     },
     /// A duration that cannot be run.
     #[error("duration scale {value} is outside 0.001 to 100; 1 is the duration in the catalogue")]
@@ -161,6 +159,17 @@ pub enum ProtocolError {
     HighestPressure {
         /// Value asked for.
         value_pa: f64,
+    },
+    /// A braid that gives way under the pressure.
+    #[error(
+        "the strands of this braid would stretch by {percent:.0} % at {highest_pressure_pa} Pa, more than {MOST_PERCENT} %; check \
+         number, diameter and modulus of the strands, or lower the pressure"
+    )]
+    SoftBraid {
+        /// Stretch of the strands at rest length, in percent.
+        percent: f64,
+        /// Highest pressure allowed.
+        highest_pressure_pa: f64,
     },
     /// The muscle is slack wherever the protocol would take it.
     #[error(
@@ -176,6 +185,9 @@ pub enum ProtocolError {
         highest_pressure_pa: f64,
     },
 }
+
+/// Stretch of the strands, in percent, beyond which nothing here is true any more; nylon breaks at about 20.
+const MOST_PERCENT: f64 = 15.0;
 
 /// What a protocol is made from.
 pub(crate) struct Setting<'a> {
@@ -208,13 +220,10 @@ impl Protocol {
     /// The protocol called `name`.
     ///
     /// # Errors
-    /// [`ProtocolError::Unknown`] with the name most like it.
-    pub fn named(name: &str) -> Result<&'static Self, ProtocolError> {
-        static PROTOCOLS: [Protocol; 15] = ALL;
-        PROTOCOLS.iter().find(|protocol| protocol.name == name).ok_or_else(|| ProtocolError::Unknown {
-            name: name.to_owned(),
-            nearest: nearest(name, &ALL.map(|protocol| protocol.name)),
-        })
+    /// [`ProtocolError::Unknown`].
+    pub fn named(name: &str) -> Result<Self, ProtocolError> {
+        let unknown = || ProtocolError::Unknown { name: name.to_owned() };
+        ALL.into_iter().find(|protocol| protocol.name == name).ok_or_else(unknown)
     }
 
     /// The protocol made for a muscle.
@@ -228,6 +237,11 @@ impl Protocol {
         }
         if !(1e3..=2e6).contains(&highest_pressure_pa) {
             return Err(ProtocolError::HighestPressure { value_pa: highest_pressure_pa });
+        }
+        let strain = muscle.strand_strain(highest_pressure_pa, muscle.muscle().rest_length_m);
+        let percent = if strain < 0.0 { f64::INFINITY } else { 100.0 * strain };
+        if percent > MOST_PERCENT {
+            return Err(ProtocolError::SoftBraid { percent, highest_pressure_pa });
         }
         let setting = Setting {
             reach: Reach::new(muscle, highest_pressure_pa, lowest_tension_n),
@@ -251,16 +265,4 @@ impl Protocol {
 /// See [`Protocol::named`] and [`Protocol::command`].
 pub fn command(name: &str, muscle: &TrueMuscle, options: &Options) -> Result<Command, ProtocolError> {
     Protocol::named(name)?.command(muscle, options)
-}
-
-/// The name most like `name`, the first of equals; `names` is not empty.
-pub(crate) fn nearest(name: &str, names: &[&'static str]) -> &'static str {
-    let mut best = ("", -1.0);
-    for candidate in names {
-        let likeness = strsim::jaro_winkler(name, candidate);
-        if likeness > best.1 {
-            best = (candidate, likeness);
-        }
-    }
-    best.0
 }

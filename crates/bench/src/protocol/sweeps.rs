@@ -68,8 +68,8 @@ pub(super) fn length_chirp(setting: &Setting<'_>) -> Vec<Take> {
             continue;
         }
         let path = path.get_or_insert_with(|| Path::from(pressure_pa, center_m));
-        path.go_to_length(center_m, reach.distance_m(5.0));
         path.go_to_pressure(pressure_pa, reach.pressure_pa(50.0));
+        path.go_to_length(center_m, reach.distance_m(5.0));
         path.follow(chirp.duration_s, chirp.knot_step_s(), |time_s| {
             let amplitude_m = amplitude_m * f64::powf(smallest, time_s / chirp.duration_s);
             (pressure_pa, center_m - amplitude_m * chirp.sine(time_s))

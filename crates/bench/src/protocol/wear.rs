@@ -39,6 +39,9 @@ pub(super) fn endurance(setting: &Setting<'_>) -> Vec<Take> {
     let (blocks, stretch) = setting.pace.cycles(20);
     let long_m = reach.length_m(0.02);
     let probe_pa = reach.pressure_pa(200.0);
+    if !reach.is_taut(probe_pa, long_m) {
+        return Vec::new();
+    }
     let rate_pa_per_s = reach.pressure_pa(50.0);
     let probe = |path: &mut Path| {
         path.go_to_pressure(probe_pa, rate_pa_per_s);
@@ -47,7 +50,11 @@ pub(super) fn endurance(setting: &Setting<'_>) -> Vec<Take> {
     let mut path = Path::from(probe_pa, long_m);
     probe(&mut path);
     for block in 1..=blocks {
-        path.go_to_pressure(reach.pressure_pa(if block % 2 == 1 { 150.0 } else { 400.0 }), rate_pa_per_s);
+        let block_pa = reach.pressure_pa(if block % 2 == 1 { 150.0 } else { 400.0 });
+        if !reach.is_taut(block_pa, long_m) {
+            continue;
+        }
+        path.go_to_pressure(block_pa, rate_pa_per_s);
         // One second from end to end.
         triangles(setting, &mut path, 0.18, 10, (long_m - reach.length_m(0.18)) / stretch);
         if block % 5 == 0 || block == blocks {
@@ -68,11 +75,15 @@ pub(super) fn dwell(setting: &Setting<'_>) -> Vec<Take> {
     let reach = &setting.reach;
     let (cycles, stretch) = setting.pace.cycles(1);
     let speed_m_per_s = reach.distance_m(1.0) / stretch;
-    let long_m = reach.length_m(0.08);
-    let mut path = Path::from(reach.pressure_pa(300.0), long_m);
+    let pressure_pa = reach.pressure_pa(300.0);
+    let (long_m, short_m) = (reach.length_m(0.08), reach.length_m(0.12));
+    if !reach.is_taut(pressure_pa, short_m) {
+        return Vec::new();
+    }
+    let mut path = Path::from(pressure_pa, long_m);
     for wait_s in [0.1, 1.0, 10.0, 100.0].map(|wait_s| setting.pace.duration_s(wait_s)).repeat(cycles as usize) {
         for share in [0.5, 1.0] {
-            path.go_to_length(long_m + share * (reach.length_m(0.12) - long_m), speed_m_per_s);
+            path.go_to_length(long_m + share * (short_m - long_m), speed_m_per_s);
             path.hold(wait_s);
         }
         path.go_to_length(long_m, speed_m_per_s);
