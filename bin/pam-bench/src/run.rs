@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use pam_core::muscle::MuscleFile;
 use pam_virtual_bench::sensors::Clock;
-use pam_virtual_bench::true_muscle::Parameters;
+use pam_virtual_bench::parameters::Parameters;
 use pam_virtual_bench::{Bench, Options, TrueMuscle, command, protocol};
 
 use crate::args::{self, Args};

@@ -27,7 +27,8 @@ use std::f64::consts::PI;
 use pam_core::muscle::Muscle;
 
 use crate::mechanism::{Mechanism, Moment};
-use crate::true_muscle::{Parameters, TrueMuscle};
+use crate::parameters::Parameters;
+use crate::true_muscle::TrueMuscle;
 
 /// Poisson's ratio of nylon.
 pub const POISSON_RATIO: f64 = 0.4;
@@ -112,7 +113,7 @@ impl Mechanism for BraidFriction {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::true_muscle::NYLON_MODULUS_PA;
+    use crate::parameters::NYLON_MODULUS_PA;
     use crate::true_muscle::tests::nominal_muscle;
 
     fn friction_at(pressure_pa: f64, contraction_ratio: f64, strand_friction: f64) -> f64 {

@@ -9,7 +9,7 @@
 //! ratio is positive when the muscle is shortened; direction is +1 contracting, -1 extending.
 //!
 //! In reading order:
-//! - [`true_muscle`]: the muscle and its parameters, from stored energies;
+//! - [`true_muscle`]: the muscle, from stored energies; [`parameters`]: its parameters;
 //! - [`mechanism`]: what acts step by step between the drive and the load cell;
 //! - [`friction`]: friction of the braid, the first such mechanism;
 //! - [`path`]: where the rig takes pressure and length; [`reach`]: where the muscle lets it;
@@ -22,6 +22,7 @@ mod dual;
 mod energy;
 pub mod friction;
 pub mod mechanism;
+pub mod parameters;
 pub mod path;
 pub mod protocol;
 pub mod reach;
@@ -30,6 +31,7 @@ pub mod sensors;
 pub mod true_muscle;
 
 pub use bench::Bench;
+pub use parameters::Parameters;
 pub use protocol::{Options, Protocol, command};
 pub use recording::BenchRecording;
 pub use sensors::Sensors;

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use pam_core::muscle::Muscle;
 use pam_virtual_bench::bench::BenchError;
+use pam_virtual_bench::parameters::{NYLON_MODULUS_PA, Parameters};
 use pam_virtual_bench::protocol::{ALL, ProtocolError};
 use pam_virtual_bench::sensors::Clock;
-use pam_virtual_bench::true_muscle::{NYLON_MODULUS_PA, Parameters};
 use pam_virtual_bench::{Bench, BenchRecording, Options, TrueMuscle, command};
 
 /// Short enough for a test, long enough for every part of a protocol.
@@ -38,13 +38,13 @@ fn muscles() -> [TrueMuscle; 5] {
 
 fn bench(name: &str, options: &Options) -> Bench {
     let muscle = TrueMuscle::nominal();
-    let command = command(name, &muscle, options).unwrap();
+    let command = command(name, &muscle, options).expect("a protocol for the nominal muscle");
     Bench::new(muscle, command)
 }
 
 fn csv(recording: &BenchRecording) -> Vec<u8> {
     let mut bytes = Vec::new();
-    recording.write_csv(&mut bytes).unwrap();
+    recording.write_csv(&mut bytes).expect("a vector takes all bytes");
     bytes
 }
 
@@ -224,7 +224,7 @@ fn a_muscle_may_hang_slack_where_that_is_asked_for() {
     let options = Options { lowest_tension_n: f64::NEG_INFINITY, ..SHORT };
     let recording = bench("isometric-ramps", &options).record(1);
     assert!(recording.true_force_n.iter().any(|force_n| *force_n < -50.0));
-    assert!(recording.true_pressure_pa.iter().any(|pressure_pa| *pressure_pa == 0.0));
+    assert!(recording.true_pressure_pa.contains(&0.0));
 }
 
 #[test]
