@@ -1,1 +1,17 @@
-//! Tables and figures, to any writer.
+//! Tables and figures, as text for whoever writes it.
+//!
+//! Nothing here prints, opens a file or knows a muscle: figures take plain columns and give an SVG document,
+//! tables take cells and give lines. Equal input gives equal bytes.
+//!
+//! In reading order: [`number`] (how numbers are written), [`Table`], [`plot`] (what figures are made of),
+//! [`fit_figure`] (the figure of a fit).
+
+mod error;
+mod fit_figure;
+pub mod number;
+pub mod plot;
+mod table;
+
+pub use error::FigureError;
+pub use fit_figure::{FitFigure, FitRecording, Role, SwarmStart, fit_figure};
+pub use table::Table;

@@ -1,0 +1,292 @@
+//! Panels a and b: force against length and against pressure.
+
+use super::clean::{Clean, extent, mean, quantile};
+use super::{CONTRACTING, EXTENDING, Role};
+use crate::number::significant;
+use crate::plot::{Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, round_levels, thin, title};
+
+/// What runs along the horizontal axis; the other of the two tells curves apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Abscissa {
+    /// Length; curves differ in pressure.
+    Length,
+    /// Pressure; curves differ in length.
+    Pressure,
+}
+
+/// Points of measured and of modelled force in the panel, over all recordings.
+const POINTS: usize = 12_000;
+/// More turns than this in one recording are noise in its direction.
+const MOST_RUNS: usize = 300;
+
+/// Means of one recording at one level, in one direction.
+#[derive(Debug)]
+struct Mean {
+    level: usize,
+    contracting: bool,
+    at: f64,
+    force_n: f64,
+    model_n: f64,
+    role: Role,
+}
+
+impl Abscissa {
+    fn along(self, recording: &Clean) -> &[f64] {
+        if self == Self::Length { &recording.length_mm } else { &recording.pressure_kpa }
+    }
+
+    fn across(self, recording: &Clean) -> &[f64] {
+        if self == Self::Length { &recording.pressure_kpa } else { &recording.length_mm }
+    }
+
+    fn other(self) -> Self {
+        if self == Self::Length { Self::Pressure } else { Self::Length }
+    }
+
+    /// Whether the channel stands still: a clamped muscle yields by less than half a percent, a regulated
+    /// pressure stays within an eighth of the highest one.
+    fn is_constant(self, recording: &Clean, recordings: &[Clean]) -> bool {
+        let values = self.along(recording);
+        let largest = extent(recordings.iter().flat_map(|other| self.along(other).iter().map(|value| value.abs()))).1;
+        let share = if self == Self::Length { 0.005 } else { 0.12 };
+        quantile(values, 0.98) - quantile(values, 0.02) <= share * largest
+    }
+
+    fn axis(self, lowest: f64, highest: f64) -> Axis {
+        Axis::linear(if self == Self::Length { "length (mm)" } else { "pressure (kPa)" }, lowest, highest, 7)
+    }
+
+    /// A level of the other channel in words.
+    fn level_text(self, level: f64) -> String {
+        if self == Self::Length {
+            format!("{} kPa", significant(level, 3))
+        } else {
+            format!("{} mm", significant((level * 2.0).round() / 2.0, 4).trim_end_matches(".0"))
+        }
+    }
+}
+
+pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, (letter, abscissa): (&str, Abscissa), recordings: &[Clean]) {
+    let (still, moving): (Vec<&Clean>, Vec<&Clean>) =
+        recordings.iter().partition(|recording| abscissa.is_constant(recording, recordings));
+    let levels = levels(abscissa, &still);
+    let means: Vec<Mean> = still.iter().flat_map(|recording| means(abscissa, recording, &levels)).collect();
+
+    let along = extent(recordings.iter().flat_map(|recording| abscissa.along(recording).iter().copied()));
+    let forces = |recording: &&Clean| {
+        let (lowest, highest) = extent(recording.force_n.iter().chain(&recording.model_n).copied());
+        [lowest, highest]
+    };
+    let force =
+        extent(moving.iter().flat_map(forces).chain(means.iter().flat_map(|mean| [mean.force_n, mean.model_n])));
+    let labels = labels(abscissa, &moving, recordings, &means, &levels);
+    let right = if labels.is_empty() { 20.0 } else { 74.0 };
+    let force_axis = Axis::linear("force (N)", force.0.min(0.0), force.1, 6);
+    let panel = Panel::new(cell, abscissa.axis(along.0, along.1), force_axis, right);
+    panel.draw_frame(canvas);
+    draw_moving(canvas, &panel, abscissa, &moving);
+    draw_means(canvas, &panel, &means);
+    panel.label_right(canvas, &labels);
+    draw_legend(canvas, cell, (letter, abscissa), (&panel, &moving, &means));
+}
+
+/// Round levels of the other channel, for recordings in which this one stands still.
+fn levels(abscissa: Abscissa, still: &[&Clean]) -> Vec<f64> {
+    if still.is_empty() {
+        return Vec::new();
+    }
+    let ends = still.iter().map(|recording| {
+        let across = abscissa.across(recording);
+        (quantile(across, 0.01), quantile(across, 0.99))
+    });
+    let (lowest, highest) = ends.fold((f64::NAN, f64::NAN), |(low, high), end| (low.min(end.0), high.max(end.1)));
+    round_levels(lowest, highest, 6)
+}
+
+/// Means of a recording near each level.
+fn means(abscissa: Abscissa, recording: &Clean, levels: &[f64]) -> Vec<Mean> {
+    let step = if levels.len() > 1 { levels[1] - levels[0] } else { f64::INFINITY };
+    // Narrow enough that force hardly changes within, wide enough for a handful of samples in passing.
+    let near = 0.08 * step;
+    let mut sums = vec![[(0.0, 0.0, 0.0); 2]; levels.len()];
+    for (row, across) in abscissa.across(recording).iter().enumerate() {
+        let level = if step.is_finite() { ((across - levels[0]) / step).round() } else { 0.0 };
+        if level < 0.0 || level as usize >= levels.len() || (across - levels[level as usize]).abs() > near {
+            continue;
+        }
+        let sum = &mut sums[level as usize][usize::from(recording.contracting[row])];
+        *sum = (sum.0 + 1.0, sum.1 + recording.force_n[row], sum.2 + recording.model_n[row]);
+    }
+    let at = mean(abscissa.along(recording));
+    let mut means = Vec::new();
+    for (level, directions) in sums.into_iter().enumerate() {
+        for (direction, (count, force_n, model_n)) in directions.into_iter().enumerate() {
+            if count > 0.0 {
+                let (force_n, model_n) = (force_n / count, model_n / count);
+                means.push(Mean { level, contracting: direction == 1, at, force_n, model_n, role: recording.role });
+            }
+        }
+    }
+    means
+}
+
+/// Measured force as a broad pale line, modelled force as a thin dark one on top.
+fn draw_moving(canvas: &mut Canvas<'_>, panel: &Panel, abscissa: Abscissa, moving: &[&Clean]) {
+    let budget = POINTS / moving.len().max(1);
+    for modelled in [false, true] {
+        for recording in moving {
+            let along = abscissa.along(recording);
+            let force = if modelled { &recording.model_n } else { &recording.force_n };
+            let mut runs = runs(&recording.contracting);
+            let told_apart = runs.len() <= MOST_RUNS;
+            if !told_apart {
+                runs = std::iter::once(0..along.len()).collect();
+            }
+            for run in runs {
+                let color = match (told_apart, recording.contracting[run.start]) {
+                    (false, _) => palette::GRAY,
+                    (true, true) => CONTRACTING,
+                    (true, false) => EXTENDING,
+                };
+                // One sample of the next run closes the gap between the two.
+                let run = run.start..(run.end + 1).min(along.len());
+                let limit = (budget * run.len() / along.len()).clamp(12, 2000);
+                let kept = thin(&force[run.clone()], limit);
+                let values = kept.into_iter().map(|row| (along[run.start + row], force[run.start + row]));
+                if modelled {
+                    panel.line(canvas, values, color.toward(palette::INK, 0.25), 1.5);
+                } else {
+                    panel.line(canvas, values, color.faded(0.3), 3.0);
+                }
+            }
+        }
+    }
+}
+
+/// Stretches of one direction.
+fn runs(contracting: &[bool]) -> Vec<std::ops::Range<usize>> {
+    let mut runs = Vec::new();
+    let mut start = 0;
+    for row in 1..=contracting.len() {
+        if row == contracting.len() || contracting[row] != contracting[start] {
+            runs.push(start..row);
+            start = row;
+        }
+    }
+    runs
+}
+
+/// Measured means as dots, modelled ones as lines from recording to recording.
+fn draw_means(canvas: &mut Canvas<'_>, panel: &Panel, means: &[Mean]) {
+    let color = |contracting: bool| if contracting { CONTRACTING } else { EXTENDING };
+    let same = 0.01 * (panel.x.to - panel.x.from);
+    for curve in curves(means, same) {
+        let (level, contracting) = (curve.level, curve.contracting);
+        let dark = color(contracting).toward(palette::INK, 0.15);
+        if let [(x, y)] = curve.points[..] {
+            panel.line(canvas, [(x - 2.0 * same, y), (x + 2.0 * same, y)], dark, 1.6);
+        }
+        panel.line(canvas, curve.points, dark, 1.6);
+        for mean in means.iter().filter(|mean| mean.level == level && mean.contracting == contracting) {
+            let center = panel.at(mean.at, mean.force_n);
+            if mean.role == Role::Estimation {
+                canvas.dot(center, 4.0, color(contracting).faded(0.75));
+            } else {
+                canvas.dot(center, 4.0, palette::WHITE.faded(0.8));
+                canvas.ring(center, 4.0, color(contracting), 1.6);
+            }
+        }
+    }
+}
+
+/// Modelled force at one level in one direction, over recordings.
+#[derive(Debug)]
+struct Curve {
+    level: usize,
+    contracting: bool,
+    points: Vec<(f64, f64)>,
+}
+
+/// Curves through means; recordings closer than `same` are averaged.
+fn curves(means: &[Mean], same: f64) -> Vec<Curve> {
+    let levels = means.iter().map(|mean| mean.level + 1).max().unwrap_or(0);
+    let mut curves = Vec::new();
+    for level in 0..levels {
+        for contracting in [true, false] {
+            let mut sorted: Vec<&Mean> =
+                means.iter().filter(|mean| mean.level == level && mean.contracting == contracting).collect();
+            sorted.sort_by(|a, b| a.at.total_cmp(&b.at));
+            let groups = sorted.chunk_by(|a, b| b.at - a.at <= same);
+            let points = groups.map(|group| {
+                let count = group.len() as f64;
+                let sum = |of: fn(&Mean) -> f64| group.iter().map(|mean| of(mean)).sum::<f64>() / count;
+                (sum(|mean| mean.at), sum(|mean| mean.model_n))
+            });
+            let points: Vec<_> = points.collect();
+            if !points.is_empty() {
+                curves.push(Curve { level, contracting, points });
+            }
+        }
+    }
+    curves
+}
+
+/// What is written at the right ends of curves: the other channel's value.
+fn labels(
+    abscissa: Abscissa,
+    moving: &[&Clean],
+    recordings: &[Clean],
+    means: &[Mean],
+    levels: &[f64],
+) -> Vec<(f64, String, Color)> {
+    // Text, sum of heights, how many.
+    let mut labels: Vec<(String, f64, f64)> = Vec::new();
+    let mut add = |text: String, height: f64| match labels.iter_mut().find(|label| label.0 == text) {
+        Some(label) => (label.1, label.2) = (label.1 + height, label.2 + 1.0),
+        None => labels.push((text, height, 1.0)),
+    };
+    for curve in curves(means, 0.0) {
+        if let Some((_, force_n)) = curve.points.last() {
+            add(abscissa.level_text(levels[curve.level]), *force_n);
+        }
+    }
+    for recording in moving {
+        if !abscissa.other().is_constant(recording, recordings) {
+            continue;
+        }
+        let along = abscissa.along(recording);
+        let end = quantile(along, 0.97);
+        let at_end: Vec<f64> =
+            along.iter().zip(&recording.model_n).filter(|(x, _)| **x >= end).map(|(_, force)| *force).collect();
+        add(abscissa.level_text(mean(abscissa.across(recording))), mean(&at_end));
+    }
+    labels.into_iter().map(|(text, sum, count)| (sum / count, text, palette::GRAY)).collect()
+}
+
+fn draw_legend(
+    canvas: &mut Canvas<'_>,
+    cell: Rect,
+    (letter, abscissa): (&str, Abscissa),
+    (panel, moving, means): (&Panel, &[&Clean], &[Mean]),
+) {
+    let what = match (abscissa, means.is_empty()) {
+        (Abscissa::Length, true) => "Force against length",
+        (Abscissa::Length, false) => "Force against length, at levels of pressure",
+        (Abscissa::Pressure, true) => "Force against pressure",
+        (Abscissa::Pressure, false) => "Force against pressure, at levels of length",
+    };
+    let (y, _) = title(canvas, cell, letter, what);
+    let mut keys =
+        vec![Key::new("contracting", Mark::Patch, CONTRACTING), Key::new("extending", Mark::Patch, EXTENDING)];
+    if !moving.is_empty() {
+        keys.push(Key::new("measured", Mark::Line(4.0), palette::GRAY.faded(0.4)));
+    }
+    if !means.is_empty() {
+        keys.push(Key::new("measured", Mark::Dot, palette::GRAY));
+    }
+    if means.iter().any(|mean| mean.role == Role::Validation) {
+        keys.push(Key::new("validation", Mark::Ring, palette::GRAY));
+    }
+    keys.push(Key::new("model", Mark::Line(1.7), palette::INK));
+    legend(canvas, &keys, panel.frame.right, y + 17.0);
+}

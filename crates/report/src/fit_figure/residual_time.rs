@@ -1,0 +1,179 @@
+//! Panel c: residual over time, one recording after the other.
+
+use super::clean::{Clean, extent, quantile};
+use super::{ESTIMATION, Role, VALIDATION};
+use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, legend, palette, text_width, thin, title};
+
+/// Size of the recordings' names, in pixels.
+const NAME_SIZE: f64 = 11.0;
+
+pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], noise_n: Option<f64>) {
+    let slots = slots(recordings);
+    let end_s = slots.last().map_or(1.0, |slot| slot.1);
+    let (residual, cut) = limits(recordings, noise_n);
+    let panel = Panel {
+        frame: cell.inset(64.0, 52.0, 20.0, 46.0),
+        x: Axis::exact("time, recordings one after the other (s)", 0.0, end_s, 12),
+        y: Axis::linear("residual (N)", residual.0, residual.1, 5),
+    };
+    for (recording, (from, to)) in recordings.iter().zip(&slots) {
+        if recording.role == Role::Validation {
+            let (left, right) = (panel.at(*from, 0.0).0, panel.at(*to, 0.0).0);
+            canvas.rect(Rect { left, right, ..panel.frame }, VALIDATION.faded(0.1));
+        }
+    }
+    if let Some(noise_n) = noise_n {
+        panel.band(canvas, -2.0 * noise_n, 2.0 * noise_n, palette::ORANGE.faded(0.28));
+    }
+    panel.draw_frame(canvas);
+    for (recording, (from, to)) in recordings.iter().zip(&slots) {
+        let pixels = panel.at(*to, 0.0).0 - panel.at(*from, 0.0).0;
+        let kept = thin(&recording.residual_n, ((2.0 * pixels) as usize).clamp(16, 2000));
+        let start_s = recording.time_s[0];
+        let values = kept.into_iter().map(|row| {
+            let time_s = (from + recording.time_s[row] - start_s).clamp(*from, *to);
+            (time_s, recording.residual_n[row].clamp(panel.y.from, panel.y.to))
+        });
+        let color = if recording.role == Role::Estimation { ESTIMATION } else { VALIDATION };
+        panel.line(canvas, values, color.toward(palette::INK, 0.2), 1.0);
+    }
+    panel.line(canvas, [(0.0, 0.0), (end_s, 0.0)], palette::INK.faded(0.5), 0.75);
+    draw_names(canvas, &panel, recordings, &slots);
+
+    let (y, _) = title(canvas, cell, "c", "Residual over time: measured less modelled force");
+    let mut keys = vec![Key::new("estimation", Mark::Line(1.6), ESTIMATION.toward(palette::INK, 0.2))];
+    if recordings.iter().any(|recording| recording.role == Role::Validation) {
+        keys.push(Key::new("validation", Mark::Line(1.6), VALIDATION.toward(palette::INK, 0.2)));
+    }
+    if noise_n.is_some() {
+        keys.push(Key::new("±2 standard deviations of the noise", Mark::Patch, palette::ORANGE.faded(0.4)));
+    }
+    if cut {
+        keys.push(Key::new("cut at the edge: single samples beyond", Mark::Line(1.0), palette::WHITE));
+    }
+    legend(canvas, &keys, panel.frame.right, y);
+}
+
+/// Where each recording begins and ends on the common axis, in s. One that takes no time, or hardly any,
+/// gets a sliver.
+fn slots(recordings: &[Clean]) -> Vec<(f64, f64)> {
+    let spans: Vec<f64> = recordings
+        .iter()
+        .map(|recording| {
+            let (first, last) = extent(recording.time_s.iter().copied());
+            last - first
+        })
+        .collect();
+    let total: f64 = spans.iter().sum();
+    let sliver = if total > 0.0 { 0.02 * total / recordings.len() as f64 } else { 1.0 };
+    let mut end = 0.0;
+    spans
+        .into_iter()
+        .map(|span| {
+            let start = end;
+            end += span.max(sliver);
+            (start, end)
+        })
+        .collect()
+}
+
+/// Limits of the residual, and whether single samples lie beyond: a spike must not flatten all the rest.
+fn limits(recordings: &[Clean], noise_n: Option<f64>) -> ((f64, f64), bool) {
+    let (lowest, highest) = extent(recordings.iter().flat_map(|recording| recording.residual_n.iter().copied()));
+    let (low, high) = recordings.iter().fold((0.0_f64, 0.0_f64), |(low, high), recording| {
+        let residual = &recording.residual_n;
+        (low.min(quantile(residual, 0.001)), high.max(quantile(residual, 0.999)))
+    });
+    let band = 2.5 * noise_n.unwrap_or(0.0);
+    let cut = highest - lowest > 3.0 * (high - low).max(band) && high > low;
+    let (from, to) = if cut { (1.2 * low, 1.2 * high) } else { (lowest, highest) };
+    ((from.min(-band), to.max(band)), cut)
+}
+
+/// Boundaries and, above the frame, as much of the names as there is room for.
+fn draw_names(canvas: &mut Canvas<'_>, panel: &Panel, recordings: &[Clean], slots: &[(f64, f64)]) {
+    let narrowest =
+        slots.iter().map(|(from, to)| panel.at(*to, 0.0).0 - panel.at(*from, 0.0).0).fold(f64::INFINITY, f64::min);
+    let full: Vec<&str> = recordings.iter().map(|recording| recording.name.as_str()).collect();
+    let fits = |names: &[&str]| names.iter().all(|name| text_width(name, NAME_SIZE) <= narrowest - 8.0);
+    let names = if fits(&full) { full } else { distinctive(&full) };
+    for (index, (name, (from, to))) in names.iter().zip(slots).enumerate() {
+        let (left, right) = (panel.at(*from, 0.0).0, panel.at(*to, 0.0).0);
+        if index > 0 {
+            canvas.line([(left, panel.frame.top - 14.0), (left, panel.frame.bottom)], palette::SILVER, 1.0);
+        }
+        let text = shortened(name, right - left - 8.0);
+        canvas.text(&text, (left + 5.0, panel.frame.top - 8.0), Anchor::Start, NAME_SIZE, palette::GRAY);
+    }
+}
+
+/// Names without what all of them begin and end with, cut at word boundaries.
+fn distinctive<'a>(names: &[&'a str]) -> Vec<&'a str> {
+    let Some((first, rest)) = names.split_first() else { return Vec::new() };
+    if rest.is_empty() || rest.iter().all(|name| name == first) {
+        return names.to_vec();
+    }
+    let boundary = |character: char| !character.is_alphanumeric() && character != '.';
+    let common = |text: &str, shared: fn(&str, &str) -> usize| rest.iter().map(|name| shared(text, name)).min();
+    let start = common(first, |a, b| {
+        a.char_indices()
+            .zip(b.chars())
+            .take_while(|((_, x), y)| x == y)
+            .last()
+            .map_or(0, |((at, x), _)| at + x.len_utf8())
+    });
+    let start = first[..start.unwrap_or(0)]
+        .rfind(boundary)
+        .map_or(0, |at| at + first[at..].chars().next().map_or(1, char::len_utf8));
+    let tails: Vec<&str> = names.iter().map(|name| &name[start..]).collect();
+    let end = tails[1..]
+        .iter()
+        .map(|name| {
+            let pairs = tails[0].chars().rev().zip(name.chars().rev());
+            pairs.take_while(|(x, y)| x == y).map(|(x, _)| x.len_utf8()).sum::<usize>()
+        })
+        .min()
+        .unwrap_or(0);
+    // The common ending starts at a boundary or at an extension's point.
+    let ending = &tails[0][tails[0].len() - end..];
+    let end = ending.find(|character: char| boundary(character) || character == '.').map_or(0, |at| end - at);
+    tails.iter().map(|name| &name[..name.len() - end]).collect()
+}
+
+/// As much of `name` as fits into `width` pixels.
+fn shortened(name: &str, width: f64) -> String {
+    if text_width(name, NAME_SIZE) <= width {
+        return name.to_owned();
+    }
+    let mut kept = String::new();
+    for character in name.chars() {
+        kept.push(character);
+        if text_width(&kept, NAME_SIZE) + text_width("…", NAME_SIZE) > width {
+            kept.pop();
+            break;
+        }
+    }
+    if kept.chars().count() < 2 { String::new() } else { kept + "…" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_lose_what_they_share() {
+        let names = ["rig/len159.5mm_test10.csv", "rig/len159.5mm_test9.csv", "rig/len167.0mm_test9.csv"];
+        assert_eq!(distinctive(&names), ["len159.5mm_test10", "len159.5mm_test9", "len167.0mm_test9"]);
+        assert_eq!(distinctive(&["a_1.csv", "a_2.csv"]), ["1", "2"]);
+        assert_eq!(distinctive(&["same", "same"]), ["same", "same"]);
+        assert_eq!(distinctive(&["µ–a", "µ–b"]), ["a", "b"]);
+        assert_eq!(distinctive(&["a", "a_b"]), ["a", "a_b"]);
+    }
+
+    #[test]
+    fn a_name_is_cut_to_its_room() {
+        assert_eq!(shortened("short", 100.0), "short");
+        assert!(shortened("a name far too long", 60.0).ends_with('…'));
+        assert_eq!(shortened("name", 5.0), "");
+    }
+}

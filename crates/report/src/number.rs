@@ -1,0 +1,109 @@
+//! How numbers are written for people.
+
+/// `value` with `digits` significant digits: `1.052`, `152`, `1.5e-7`. Digits before the decimal point are
+/// never replaced by zeros.
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return if value.is_nan() { "–".to_owned() } else { with_minus(format!("{value}")) };
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = digits.max(1);
+    let scientific = format!("{value:.*e}", digits - 1);
+    // After rounding, so that 9.99 with two digits counts as 10.
+    let exponent = exponent_of(&scientific);
+    if (-4..7).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        with_minus(format!("{value:.decimals$}"))
+    } else {
+        with_minus(scientific)
+    }
+}
+
+/// `value ± stderr`, both to the decimal place that the standard error allows: `1.052 ± 0.004`. The error
+/// keeps one digit, two where the first is a 1, because rounding would change it by up to a half.
+pub fn with_stderr(value: f64, stderr: f64) -> String {
+    if !(stderr.is_finite() && stderr > 0.0 && value.is_finite()) {
+        return significant(value, 4);
+    }
+    let rounded = format!("{stderr:.0e}");
+    let leading_one = rounded.starts_with('1');
+    let place = exponent_of(&rounded) - i32::from(leading_one);
+    let largest = value.abs().max(stderr);
+    let exponent = largest.log10().floor() as i32;
+    if (-4..7).contains(&exponent) && place >= -9 {
+        let decimals = (-place).max(0) as usize;
+        return format!("{} ± {stderr:.decimals$}", with_minus(format!("{value:.decimals$}")));
+    }
+    let scale = 10f64.powi(exponent);
+    let decimals = (exponent - place).max(0) as usize;
+    let value = with_minus(format!("{:.decimals$}", value / scale));
+    format!("({value} ± {:.decimals$})e{exponent}", stderr / scale)
+}
+
+/// `value` in `unit` with the prefix that keeps one to three digits before the point: `152 kPa`. A unit
+/// that is empty, `1`, or a power (`m^2`, `m²`) takes no prefix.
+pub fn engineering(value: f64, unit: &str, digits: usize) -> String {
+    const PREFIXES: [&str; 9] = ["p", "n", "µ", "m", "", "k", "M", "G", "T"];
+    let plain = unit.is_empty() || unit == "1" || unit.contains(['^', '²', '³', '%', '°']) || unit == "rad";
+    if plain || !value.is_finite() || value == 0.0 {
+        let unit = if unit == "1" { "" } else { unit };
+        return format!("{} {unit}", significant(value, digits)).trim_end().to_owned();
+    }
+    let exponent = exponent_of(&format!("{value:.*e}", digits.max(1) - 1));
+    let step = exponent.div_euclid(3).clamp(-4, 4);
+    let prefix = PREFIXES[(step + 4) as usize];
+    format!("{} {prefix}{unit}", significant(value / 1000f64.powi(step), digits))
+}
+
+/// Exponent in the output of `{:e}`.
+fn exponent_of(scientific: &str) -> i32 {
+    scientific.rsplit('e').next().and_then(|exponent| exponent.parse().ok()).unwrap_or(0)
+}
+
+/// A typographic minus, which is as wide as a plus; a negative zero loses its sign.
+pub(crate) fn with_minus(text: String) -> String {
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|digit| matches!(digit, '0' | '.')) => rest.to_owned(),
+        Some(rest) => format!("−{rest}"),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_digits_survive_rounding_and_size() {
+        let cases = [(1.0517, "1.05"), (9.999, "10.0"), (151_950.0, "151950"), (-0.001, "−0.00100"), (0.0, "0")];
+        for (value, expected) in cases {
+            assert_eq!(significant(value, 3), expected);
+        }
+        assert_eq!(significant(1.6e-7, 2), "1.6e-7");
+        assert_eq!(significant(3.0e9, 2), "3.0e9");
+        assert_eq!(significant(f64::NAN, 2), "–");
+    }
+
+    #[test]
+    fn a_value_is_written_to_the_place_its_error_allows() {
+        assert_eq!(with_stderr(1.05213, 0.0041), "1.052 ± 0.004");
+        assert_eq!(with_stderr(1.05213, 0.00141), "1.0521 ± 0.0014");
+        assert_eq!(with_stderr(152.3, 12.0), "152 ± 12");
+        assert_eq!(with_stderr(1234.0, 40.0), "1234 ± 40");
+        assert_eq!(with_stderr(2.5e9, 3.0e7), "(2.50 ± 0.03)e9");
+        assert_eq!(with_stderr(-0.0001, 0.04), "0.00 ± 0.04");
+        assert_eq!(with_stderr(1.05213, f64::NAN), "1.052");
+    }
+
+    #[test]
+    fn engineering_units_keep_one_to_three_digits_before_the_point() {
+        assert_eq!(engineering(151_950.0, "Pa", 3), "152 kPa");
+        assert_eq!(engineering(0.267, "m", 3), "267 mm");
+        assert_eq!(engineering(999.96, "N", 4), "1.000 kN");
+        assert_eq!(engineering(3.0e9, "Pa", 2), "3.0 GPa");
+        assert_eq!(engineering(0.436, "rad", 3), "0.436 rad");
+        assert_eq!(engineering(0.5, "1", 2), "0.50");
+    }
+}

@@ -1,0 +1,68 @@
+//! A legend in one row, above the panel, where it covers no data.
+
+use crate::plot::{Anchor, Canvas, Color, palette, text_width};
+
+/// Size of the letters, in pixels.
+const SIZE: f64 = 11.5;
+/// Room for a mark and the gap to its text.
+const MARK: f64 = 22.0;
+/// Gap between entries.
+const GAP: f64 = 16.0;
+
+/// How an entry of a legend is marked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mark {
+    /// A line of this width.
+    Line(f64),
+    /// A dashed line of this width.
+    Dashes(f64),
+    /// A filled dot.
+    Dot,
+    /// An open dot.
+    Ring,
+    /// A filled rectangle.
+    Patch,
+}
+
+/// An entry of a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Key {
+    /// What is written.
+    pub text: String,
+    /// What stands before it.
+    pub mark: Mark,
+    /// Color of the mark.
+    pub color: Color,
+}
+
+impl Key {
+    /// An entry.
+    pub fn new(text: impl Into<String>, mark: Mark, color: Color) -> Self {
+        Self { text: text.into(), mark, color }
+    }
+}
+
+/// Draws `keys` in one row that ends at `right`, its middle at height `y`; gives the left end of the row.
+pub fn legend(canvas: &mut Canvas<'_>, keys: &[Key], right: f64, y: f64) -> f64 {
+    let widths: Vec<f64> = keys.iter().map(|key| MARK + text_width(&key.text, SIZE)).collect();
+    let gaps = GAP * keys.len().saturating_sub(1) as f64;
+    let left = right - widths.iter().sum::<f64>() - gaps;
+    let mut x = left;
+    for (key, width) in keys.iter().zip(widths) {
+        let (from, to) = ((x, y), (x + MARK - 6.0, y));
+        let middle = (0.5 * (from.0 + to.0), y);
+        match key.mark {
+            Mark::Line(width) => canvas.line([from, to], key.color, width),
+            Mark::Dashes(width) => canvas.dashes(from, to, key.color, width, 3.2),
+            Mark::Dot => canvas.dot(middle, 3.5, key.color),
+            Mark::Ring => canvas.ring(middle, 3.5, key.color, 1.4),
+            Mark::Patch => {
+                let patch = crate::plot::Rect { left: from.0 + 2.0, top: y - 5.0, right: to.0, bottom: y + 5.0 };
+                canvas.rect(patch, key.color);
+            }
+        }
+        canvas.text(&key.text, (x + MARK, y), Anchor::Start, SIZE, palette::GRAY);
+        x += width + GAP;
+    }
+    left
+}
