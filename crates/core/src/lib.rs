@@ -4,5 +4,9 @@
 //! contraction ratio is positive when the muscle is shortened. Nothing here prints, reads a clock or
 //! draws random numbers.
 
+pub mod artifact;
+pub mod direction;
 pub mod force;
 pub mod muscle;
+pub mod quality;
+pub mod recording;

@@ -5,18 +5,29 @@
 //! over it takes one chunk at a time. A gap in time splits a recording into [segments](Recording::segments):
 //! no filter, derivative or memory runs across one.
 
+mod clock;
 mod error;
+mod expression;
+mod fields;
 mod header;
+mod lines;
+mod options;
 mod read;
 mod repair;
+mod rows;
 mod samples;
+mod sniff;
+mod source;
+mod spill;
+mod stamps;
 mod units;
 
-pub use error::{ReadError, ReadErrorKind};
-pub use header::{Calibration, Columns, FixedChannel, OptionSyntaxError, Quantity};
+pub use error::{Place, ReadError, ReadErrorKind, RowFault};
+pub use options::{Calibration, ColumnMap, Columns, ExpressionFault, FixedChannel, OptionSyntaxError};
 pub use read::{ReadOptions, read_recording};
-pub use repair::Repairs;
-pub use samples::{CHUNK_ROWS, Chunk, Samples};
+pub use repair::{Repairs, SkippedRow};
+pub use samples::{CHUNK_ROWS, Chunk, MEMORY_ROWS, Samples};
+pub use units::Quantity;
 
 use std::ops::Range;
 

@@ -1,0 +1,441 @@
+//! Why a recording is refused; every message ends with what to do about it.
+
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use super::units::Quantity;
+
+/// Displays as `path:line:column: reason`, which editors turn into a link; trouble with the file as a whole
+/// is `path: reason`.
+#[derive(Debug, thiserror::Error)]
+#[error("{}{}: {kind}", shown_path(path), shown_place(*place))]
+pub struct ReadError {
+    /// File being read; `-` is standard input.
+    pub path: PathBuf,
+    /// Where in the file, unless it concerns the whole.
+    pub place: Option<Place>,
+    /// What is wrong there.
+    pub kind: ReadErrorKind,
+}
+
+/// A place in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// Line, counted from 1; comments and blank lines count.
+    pub line: u64,
+    /// Field within the line, counted from 1.
+    pub column: u64,
+}
+
+fn shown_path(path: &std::path::Path) -> String {
+    if path.as_os_str() == "-" { "standard input".to_owned() } else { clipped(&path.to_string_lossy(), 1000) }
+}
+
+fn shown_place(place: Option<Place>) -> String {
+    place.map_or_else(String::new, |place| format!(":{}:{}", place.line, place.column))
+}
+
+/// What is wrong with a recording.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadErrorKind {
+    /// There is no such file.
+    #[error("no such file; check the path")]
+    NotFound,
+    /// The file may not be read.
+    #[error("permission denied; make the file readable")]
+    PermissionDenied,
+    /// The path is a directory.
+    #[error("is a directory; name the recordings in it")]
+    Directory,
+    /// The system failed to read on.
+    #[error("cannot be read: {source}; check the disk or copy the file anew")]
+    Unreadable {
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Compressed data that ends early or is damaged.
+    #[error("the compressed data is damaged or cut off ({source}); copy the file anew, or test it with gzip -t")]
+    DamagedGzip {
+        /// What the decompressor said.
+        source: io::Error,
+    },
+    /// The temporary file for large recordings cannot be written.
+    #[error(
+        "the recording is larger than memory and the temporary file in {} cannot be written: {source}; \
+         set TMPDIR to a directory with space",
+        directory.display()
+    )]
+    Spill {
+        /// Where the file should have gone.
+        directory: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Text in UTF-16.
+    #[error("the text is UTF-16; save it as UTF-8 (iconv -f UTF-16 -t UTF-8)")]
+    Utf16,
+    /// Not text.
+    #[error("this is {found}, not text; {remedy}")]
+    Binary {
+        /// What it seems to be.
+        found: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// Lines that end as on a Macintosh before 2001.
+    #[error("lines end with a carriage return alone; convert the file (tr '\\r' '\\n')")]
+    CarriageReturns,
+    /// Nothing but blank lines and comments.
+    #[error("the file holds no rows; record again, or check that the logger closed the file")]
+    Empty,
+    /// A header, a row or a comment of absurd length.
+    #[error("the line is longer than {limit} bytes; check that lines end with a line feed")]
+    LineTooLong {
+        /// Longest line that is read, in bytes.
+        limit: usize,
+    },
+    /// The first row is numbers and nobody named the columns.
+    #[error("the file has no header; name its columns in their order, for example --columns {example} (- skips one)")]
+    NoHeader {
+        /// Names for as many columns as the file has.
+        example: String,
+    },
+    /// Columns separated by blanks.
+    #[error("the columns are separated by spaces; separate them by comma, semicolon or tab")]
+    SpaceSeparated,
+    /// A quote in the header that is not closed.
+    #[error("a quote is not closed on its line; close it or remove it")]
+    OpenQuote,
+    /// A column whose name nearly is a quantity that the file lacks.
+    #[error("unknown column \"{name}\"; did you mean {suggestion}?")]
+    UnknownColumn {
+        /// Name found.
+        name: String,
+        /// The right name that is nearest.
+        suggestion: String,
+    },
+    /// A quantity whose unit is not known.
+    #[error(
+        "unknown unit \"{unit}\" of column \"{name}\"; {quantity} can be in {}, for example {} \
+         (for other units see --calibrate)",
+        quantity.unit_list(),
+        quantity.example()
+    )]
+    UnknownUnit {
+        /// Name found.
+        name: String,
+        /// What follows the quantity.
+        unit: String,
+        /// The quantity.
+        quantity: Quantity,
+    },
+    /// A quantity without a unit.
+    #[error(
+        "column \"{name}\" has no unit; add one of {} to its name, for example {example}, or give --map {example}={}",
+        quantity.unit_list(),
+        shell_quoted(name),
+        example = quantity.example()
+    )]
+    UnitMissing {
+        /// Name found.
+        name: String,
+        /// The quantity.
+        quantity: Quantity,
+    },
+    /// Two columns for one quantity.
+    #[error(
+        "column \"{second}\" gives {quantity} again after \"{first}\"; \
+         keep one of them, for example with --map {example}={}",
+        shell_quoted(first),
+        example = quantity.example()
+    )]
+    Twice {
+        /// The quantity.
+        quantity: Quantity,
+        /// The column that came first.
+        first: String,
+        /// The column that came again.
+        second: String,
+    },
+    /// A quantity that no column gives.
+    #[error("no column gives {quantity}; {} (the file has {})", missing_remedy(*quantity, hint.as_deref()), listed(columns))]
+    Missing {
+        /// The quantity.
+        quantity: Quantity,
+        /// Columns that the file has.
+        columns: Vec<String>,
+        /// Command-line option that would probably do.
+        hint: Option<String>,
+    },
+    /// `--map` or `--calibrate` names a column that the file lacks.
+    #[error("{option} names column \"{original}\", which the file lacks; {}", nearest_remedy(nearest.as_deref(), columns))]
+    NoSuchColumn {
+        /// The option.
+        option: &'static str,
+        /// The name in the option.
+        original: String,
+        /// The nearest name in the file.
+        nearest: Option<String>,
+        /// Columns that the file has.
+        columns: Vec<String>,
+    },
+    /// `--map` or `--calibrate` names a column that the file has twice.
+    #[error(
+        "{option} names column \"{original}\", which the file has more than once; rename one of them in the header"
+    )]
+    AmbiguousColumn {
+        /// The option.
+        option: &'static str,
+        /// The name in the option.
+        original: String,
+    },
+    /// Two options supply one quantity.
+    #[error("{first} and {second} both supply {quantity}; leave one away")]
+    OptionTwice {
+        /// The quantity.
+        quantity: Quantity,
+        /// The option that came first.
+        first: String,
+        /// The other one.
+        second: String,
+    },
+    /// `--fixed` for a channel that the file has.
+    #[error("--fixed {fixed} contradicts column \"{column}\", which gives {quantity} too; leave --fixed away")]
+    FixedClash {
+        /// Name in the option.
+        fixed: String,
+        /// Name in the file.
+        column: String,
+        /// The quantity.
+        quantity: Quantity,
+    },
+    /// `--columns` names more or fewer columns than the file has.
+    #[error("--columns names {} but the file has {}; name each of them in its order, - skips one", counted(*given, "column"), counted(*found, "column"))]
+    ColumnsCount {
+        /// Names given.
+        given: usize,
+        /// Columns found.
+        found: usize,
+    },
+    /// `--columns` for a file with a header.
+    #[error("the file has a header of its own; leave --columns away and rename its columns with --map")]
+    HeaderPresent,
+    /// A row that cannot be used.
+    #[error("{fault}; {}", fault.remedy())]
+    Row {
+        /// What is wrong with it.
+        fault: RowFault,
+    },
+    /// Fewer rows than are needed.
+    #[error("{}{}; {}", counted_rows(*found), skipped_clause(*skipped), too_few_remedy(*found, *needed))]
+    TooFewRows {
+        /// Rows that could be used.
+        found: usize,
+        /// Rows that are needed.
+        needed: usize,
+        /// Rows that were skipped.
+        skipped: u64,
+    },
+    /// A clock that stands still.
+    #[error("time never varies (it is {time_s} s in every row); check the logger's clock and the column that holds it")]
+    TimeNeverVaries {
+        /// Where the clock stands.
+        time_s: f64,
+    },
+    /// A clock that stands still for very long.
+    #[error(
+        "time stands at {time_s} s for more than {rows} rows; \
+         check the logger's clock, or cut the file where it stopped"
+    )]
+    ClockStands {
+        /// Where the clock stands.
+        time_s: f64,
+        /// For how long at least.
+        rows: usize,
+    },
+    /// Stamps so large that the time between rows is lost in their rounding.
+    #[error("the stamps around {time_s} s are too large to tell rows apart; subtract the start from the time column")]
+    StampsTooLarge {
+        /// One of them.
+        time_s: f64,
+    },
+    /// A load cell that shows one value.
+    #[error(
+        "force never varies (it is {force_n} N in every row); check the load cell and the column that holds it, \
+         or for a dead weight leave the column out and give --fixed force_N={force_n}"
+    )]
+    ForceNeverVaries {
+        /// The value.
+        force_n: f64,
+    },
+}
+
+/// What is wrong with one row.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RowFault {
+    /// Not as many fields as the header.
+    #[error("{} where the header has {expected}", counted(*found, "field"))]
+    FieldCount {
+        /// Fields in the row.
+        found: usize,
+        /// Fields in the header.
+        expected: usize,
+    },
+    /// Nothing in a field that is used.
+    #[error("column \"{column}\" is empty")]
+    EmptyField {
+        /// Name of the column.
+        column: String,
+    },
+    /// Text in a number.
+    #[error("\"{text}\" in column \"{column}\" is not a number")]
+    NotANumber {
+        /// Name of the column.
+        column: String,
+        /// The text, shortened.
+        text: String,
+    },
+    /// NaN or infinite.
+    #[error("\"{text}\" in column \"{column}\" is not finite")]
+    NotFinite {
+        /// Name of the column.
+        column: String,
+        /// The text, shortened.
+        text: String,
+    },
+    /// A number that no bench measures.
+    #[error("{text} in column \"{column}\" is beyond anything a bench measures")]
+    Absurd {
+        /// Name of the column.
+        column: String,
+        /// The text, shortened.
+        text: String,
+    },
+    /// A quote that is not closed.
+    #[error("a quote is not closed on its line")]
+    OpenQuote,
+    /// A line of absurd length.
+    #[error("the line is longer than {limit} bytes")]
+    TooLong {
+        /// Longest line that is read, in bytes.
+        limit: usize,
+    },
+    /// A stamp before the one above.
+    #[error("the clock runs back from {before_s} s to {time_s} s")]
+    ClockRunsBack {
+        /// Stamp of the row above, in s.
+        before_s: f64,
+        /// Stamp of this row, in s.
+        time_s: f64,
+    },
+    /// A stamp after which the clock runs back to where it was.
+    #[error("the clock jumps ahead to {time_s} s and back again")]
+    ClockJumpsAhead {
+        /// Stamp of this row, in s.
+        time_s: f64,
+    },
+}
+
+impl RowFault {
+    /// What to do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::ClockRunsBack { .. } => {
+                "cut the file there if the logger started anew, or drop such rows with --skip-bad-rows"
+            }
+            Self::FieldCount { found, expected } if *found == 2 * expected => {
+                "decimal commas need semicolons or tabs between columns; drop such rows with --skip-bad-rows"
+            }
+            _ => "correct the row, or drop such rows with --skip-bad-rows",
+        }
+    }
+}
+
+fn counted(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+}
+
+fn counted_rows(found: usize) -> String {
+    match found {
+        0 => "there are no rows".to_owned(),
+        1 => "there is only one row".to_owned(),
+        _ => format!("there are only {found} rows"),
+    }
+}
+
+fn skipped_clause(skipped: u64) -> String {
+    if skipped == 0 { String::new() } else { format!(" that can be used ({skipped} skipped)") }
+}
+
+fn too_few_remedy(found: usize, needed: usize) -> String {
+    if found == 0 {
+        "record again, or check that the logger closed the file".to_owned()
+    } else {
+        format!("at least {needed} are needed: record for longer")
+    }
+}
+
+/// What to do about a missing quantity.
+fn missing_remedy(quantity: Quantity, hint: Option<&str>) -> String {
+    let example = quantity.example();
+    match (hint, quantity) {
+        (Some(hint), _) => format!("name a column {example} in the header or, as it seems to fit, give {hint}"),
+        (None, Quantity::Time) => {
+            format!("name a column {example} in the header or point to one with --map {example}=COLUMN")
+        }
+        (None, _) => format!(
+            "name a column {example} in the header, point to one with --map {example}=COLUMN, \
+             or give a constant with --fixed {example}=VALUE"
+        ),
+    }
+}
+
+fn nearest_remedy(nearest: Option<&str>, columns: &[String]) -> String {
+    match nearest {
+        Some(nearest) => format!("did you mean \"{nearest}\"?"),
+        None => format!("it has {}", listed(columns)),
+    }
+}
+
+/// Names for a message, the first few.
+fn listed(columns: &[String]) -> String {
+    const SHOWN: usize = 8;
+    if columns.is_empty() {
+        return "no named column".to_owned();
+    }
+    let names: Vec<&str> = columns.iter().take(SHOWN).map(String::as_str).collect();
+    let more = columns.len().saturating_sub(SHOWN);
+    if more == 0 { names.join(", ") } else { format!("{} and {more} more", names.join(", ")) }
+}
+
+/// `name` as a word on a command line.
+pub(crate) fn shell_quoted(name: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
+    if !name.is_empty() && name.chars().all(plain) { name.to_owned() } else { format!("\"{name}\"") }
+}
+
+/// `text` on one line, at most `limit` characters.
+pub(crate) fn clipped(text: &str, limit: usize) -> String {
+    let mut shown = String::new();
+    for (index, character) in text.chars().enumerate() {
+        if index == limit {
+            shown.push('…');
+            break;
+        }
+        if character.is_control() || matches!(character, '\u{2028}' | '\u{2029}') {
+            shown.extend(character.escape_debug());
+        } else {
+            shown.push(character);
+        }
+    }
+    shown
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}:{}", self.line, self.column)
+    }
+}

@@ -1,0 +1,141 @@
+//! First look at a file: whether it is text, what separates its columns and how many there are.
+
+use super::error::ReadErrorKind;
+use super::fields::{is_blank, is_comment, number, split, strip_line_end};
+
+/// Bytes that decide whether a file is text.
+const TEXT_BYTES: usize = 4096;
+
+/// Rows that decide which separator it is.
+const SAMPLE_ROWS: usize = 32;
+
+/// Fields of a row that are looked at.
+const SAMPLE_FIELDS: usize = 4096;
+
+/// Separators, in the order in which they win a draw.
+const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
+
+/// Files that people mistake for text: first bytes, what they are, what to do.
+const MAGIC: [(&[u8], &str, &str); 6] = [
+    (b"PK\x03\x04", "a zip archive or a spreadsheet", "unpack it, or export the sheet as CSV"),
+    (b"\xd0\xcf\x11\xe0", "an old spreadsheet or document", "export the sheet as CSV"),
+    (b"\x28\xb5\x2f\xfd", "a file compressed with zstd", "decompress it, or compress with gzip instead"),
+    (b"\xfd7zXZ", "a file compressed with xz", "decompress it, or compress with gzip instead"),
+    (b"BZh", "a file compressed with bzip2", "decompress it, or compress with gzip instead"),
+    (b"\x89HDF", "an HDF5 file", "export it as CSV"),
+];
+
+/// Checks that `start` begins a text; returns the length of its byte order mark.
+pub(crate) fn check_text(start: &[u8]) -> Result<usize, ReadErrorKind> {
+    for (magic, found, remedy) in MAGIC {
+        if start.starts_with(magic) {
+            return Err(ReadErrorKind::Binary { found, remedy });
+        }
+    }
+    if start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff") {
+        return Err(ReadErrorKind::Utf16);
+    }
+    let head = &start[..start.len().min(TEXT_BYTES)];
+    let nuls = |offset: usize| head.iter().skip(offset).step_by(2).filter(|byte| **byte == 0).count();
+    let (even, odd) = (nuls(0), nuls(1));
+    if head.len() >= 8 && (even == 0 || odd == 0) && (even + odd) * 5 >= head.len() * 2 {
+        return Err(ReadErrorKind::Utf16);
+    }
+    let is_control = |byte: &u8| *byte < 0x20 && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c | 0x1a | 0x1b);
+    let n_control = head.iter().filter(|byte| is_control(byte)).count();
+    if n_control * 50 > head.len() {
+        let remedy = "export the recording as CSV";
+        return Err(ReadErrorKind::Binary { found: "a binary file", remedy });
+    }
+    if !start.contains(&b'\n') && start.iter().filter(|byte| **byte == b'\r').count() > 1 {
+        return Err(ReadErrorKind::CarriageReturns);
+    }
+    Ok(if start.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 })
+}
+
+/// How rows are laid out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Layout {
+    pub(crate) separator: u8,
+    /// Fields in most of the first rows.
+    pub(crate) n_fields: usize,
+    /// Words separated by blanks, in one column only.
+    pub(crate) space_separated: bool,
+}
+
+/// Finds the separator that makes the first rows alike and numeric; `n_columns` where the user has said how
+/// many there are.
+pub(crate) fn layout(start: &[u8], n_columns: Option<usize>) -> Layout {
+    let rows: Vec<&[u8]> = start
+        .split_inclusive(|byte| *byte == b'\n')
+        .filter(|line| line.ends_with(b"\n") || line.len() < start.len() || start.len() < TEXT_BYTES)
+        .map(strip_line_end)
+        .filter(|line| !is_blank(line) && !is_comment(line))
+        .take(SAMPLE_ROWS)
+        .collect();
+    let mut best: Option<((bool, bool, usize, usize, usize), Layout)> = None;
+    for separator in SEPARATORS {
+        let counts: Vec<usize> = rows.iter().map(|row| count(row, separator)).collect();
+        let n_fields = commonest(&counts);
+        let n_first = counts.first().copied().unwrap_or(1);
+        let alike = counts.iter().filter(|count| **count == n_first).count();
+        let expected = n_columns.is_some_and(|n_columns| n_fields == n_columns);
+        let rank = (expected, n_first > 1, alike, numeric_share(&rows, separator), n_first);
+        if best.as_ref().is_none_or(|(best, _)| rank > *best) {
+            best = Some((rank, Layout { separator, n_fields, space_separated: false }));
+        }
+    }
+    let mut layout = best.map_or(Layout { separator: b',', n_fields: 1, space_separated: false }, |(_, layout)| layout);
+    let words = |row: &&[u8]| row.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
+    layout.space_separated = layout.n_fields == 1 && !rows.is_empty() && rows.iter().take(2).all(|row| words(row) > 1);
+    layout
+}
+
+/// Fields of a row; an empty one at its end is the mark of loggers that end a row with a separator.
+fn count(row: &[u8], separator: u8) -> usize {
+    let mut fields = Vec::new();
+    let n_fields = split(row, separator, SAMPLE_FIELDS, &mut fields).unwrap_or(1);
+    n_fields - usize::from(n_fields > 1 && row.trim_ascii_end().last().is_none_or(|byte| *byte == separator))
+}
+
+fn commonest(counts: &[usize]) -> usize {
+    let times = |count: usize| counts.iter().filter(|other| **other == count).count();
+    counts.iter().copied().max_by_key(|count| (times(*count), *count)).unwrap_or(1)
+}
+
+/// Fields below the first row that are numbers, in thousandths.
+fn numeric_share(rows: &[&[u8]], separator: u8) -> usize {
+    let (mut n_numbers, mut n_fields) = (0, 0);
+    let mut fields = Vec::new();
+    for row in rows.iter().skip(1) {
+        if split(row, separator, SAMPLE_FIELDS, &mut fields).is_ok() {
+            n_fields += fields.len();
+            let is_number = |field: &&std::ops::Range<usize>| number(&row[(*field).clone()], separator != b',').is_ok();
+            n_numbers += fields.iter().filter(is_number).count();
+        }
+    }
+    (1000 * n_numbers).checked_div(n_fields).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn separator(text: &str) -> (char, usize) {
+        let layout = layout(text.as_bytes(), None);
+        (char::from(layout.separator), layout.n_fields)
+    }
+
+    #[test]
+    fn the_separator_is_the_one_that_makes_rows_alike() {
+        assert_eq!(separator("time_s,force_N\n0,1\n"), (',', 2));
+        assert_eq!(separator("time_s;force_N\n0,5;1,5\n"), (';', 2));
+        assert_eq!(separator("time_s\tforce_N\n0,5\t1,5\n"), ('\t', 2));
+        assert_eq!(separator("# a,b,c\n\n0,1;0,2;0,3\n0,1;0,2;0,3\n"), (';', 3));
+        assert_eq!(separator("0,1;0,2\n0,1;0,2\n"), (';', 2));
+        assert_eq!(separator("time_s;\"a;b;c\";force_N\n0;1;2"), (';', 3));
+        assert_eq!(separator("time_s,force_N,\n0,1,\n"), (',', 2));
+        assert_eq!(separator("time_s"), (',', 1));
+        assert_eq!(separator(""), (',', 1));
+    }
+}

@@ -1,0 +1,251 @@
+//! Quantities and units as a header writes them: `pressure_kPa`, `time_ms`.
+
+use std::fmt;
+
+/// What a column of a recording measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Time since any origin.
+    Time,
+    /// Gauge pressure in the muscle.
+    Pressure,
+    /// Length, clamp to clamp.
+    Length,
+    /// Tension, positive when the muscle pulls.
+    Force,
+    /// Temperature of the muscle; optional.
+    Temperature,
+}
+
+/// A unit: `si = value * multiply / divide + offset`. Decimal fractions divide, because `159.5 / 1000`
+/// is the double nearest to 0.1595 and `159.5 * 0.001` need not be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Unit {
+    /// Spelling in a header.
+    pub(crate) symbol: &'static str,
+    multiply: f64,
+    divide: f64,
+    offset: f64,
+}
+
+impl Unit {
+    const fn new(symbol: &'static str, multiply: f64, divide: f64) -> Self {
+        Self { symbol, multiply, divide, offset: 0.0 }
+    }
+
+    /// `value` in SI.
+    #[inline]
+    pub(crate) fn si(&self, value: f64) -> f64 {
+        value * self.multiply / self.divide + self.offset
+    }
+}
+
+const TIME: [Unit; 3] = [Unit::new("s", 1.0, 1.0), Unit::new("ms", 1.0, 1e3), Unit::new("us", 1.0, 1e6)];
+
+/// The pound-force per square inch follows from the international inch and pound.
+const PRESSURE: [Unit; 5] = [
+    Unit::new("kPa", 1e3, 1.0),
+    Unit::new("Pa", 1.0, 1.0),
+    Unit::new("MPa", 1e6, 1.0),
+    Unit::new("bar", 1e5, 1.0),
+    Unit::new("psi", 4.448_221_615_260_5, 0.0254 * 0.0254),
+];
+
+const LENGTH: [Unit; 4] =
+    [Unit::new("mm", 1.0, 1e3), Unit::new("m", 1.0, 1.0), Unit::new("cm", 1.0, 1e2), Unit::new("in", 0.0254, 1.0)];
+
+/// Pound-force and kilogram-force rest on the standard acceleration of 9.80665 m/s².
+const FORCE: [Unit; 4] = [
+    Unit::new("N", 1.0, 1.0),
+    Unit::new("kN", 1e3, 1.0),
+    Unit::new("lbf", 4.448_221_615_260_5, 1.0),
+    Unit::new("kgf", 9.806_65, 1.0),
+];
+
+const TEMPERATURE: [Unit; 2] = [
+    Unit { symbol: "C", multiply: 1.0, divide: 1.0, offset: 273.15 },
+    Unit { symbol: "K", multiply: 1.0, divide: 1.0, offset: 0.0 },
+];
+
+impl Quantity {
+    /// Every quantity, in the order of the columns of a recording.
+    pub const ALL: [Self; 5] = [Self::Time, Self::Pressure, Self::Length, Self::Force, Self::Temperature];
+
+    /// Word in a header.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Time => "time",
+            Self::Pressure => "pressure",
+            Self::Length => "length",
+            Self::Force => "force",
+            Self::Temperature => "temperature",
+        }
+    }
+
+    /// A right name, for messages: the unit that benches use most.
+    pub fn example(self) -> String {
+        format!("{}_{}", self.name(), self.units()[0].symbol)
+    }
+
+    /// Units known, the commonest first.
+    pub(crate) fn units(self) -> &'static [Unit] {
+        match self {
+            Self::Time => &TIME,
+            Self::Pressure => &PRESSURE,
+            Self::Length => &LENGTH,
+            Self::Force => &FORCE,
+            Self::Temperature => &TEMPERATURE,
+        }
+    }
+
+    /// Units known, as a list for messages: `kPa, Pa, MPa, bar or psi`.
+    pub(crate) fn unit_list(self) -> String {
+        let symbols: Vec<&str> = self.units().iter().map(|unit| unit.symbol).collect();
+        match symbols.split_last() {
+            Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+            None => String::new(),
+        }
+    }
+
+    pub(crate) fn unit(self, symbol: &str) -> Option<&'static Unit> {
+        self.units().iter().find(|unit| unit.symbol.eq_ignore_ascii_case(symbol))
+    }
+
+    fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|quantity| quantity.name().eq_ignore_ascii_case(name))
+    }
+
+    /// The quantity that `word` misspells: one letter off, two in a long word.
+    fn resembling(word: &str) -> Option<Self> {
+        let word = word.to_ascii_lowercase();
+        let allowed = if word.chars().count() <= 6 { 1 } else { 2 };
+        Self::ALL
+            .into_iter()
+            .map(|quantity| (strsim::osa_distance(&word, quantity.name()), quantity))
+            .filter(|(distance, _)| *distance <= allowed)
+            .min()
+            .map(|(_, quantity)| quantity)
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+/// What the name of a column says.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Name {
+    /// A right name.
+    Channel(Quantity, &'static Unit),
+    /// A quantity without a unit.
+    UnitMissing(Quantity),
+    /// A quantity with a unit that is not known.
+    UnitUnknown(Quantity, String),
+    /// Nearly a quantity; with the right spelling.
+    Misspelt(Quantity, String),
+    /// None of the above.
+    Other,
+}
+
+impl Name {
+    pub(crate) fn read(name: &str) -> Self {
+        let name = name.trim();
+        if let Some(quantity) = Quantity::from_name(name) {
+            return Self::UnitMissing(quantity);
+        }
+        let Some((word, symbol)) = name.rsplit_once('_') else {
+            return match Quantity::resembling(name) {
+                Some(quantity) => Self::Misspelt(quantity, quantity.example()),
+                None => Self::Other,
+            };
+        };
+        if let Some(quantity) = Quantity::from_name(word) {
+            return match quantity.unit(symbol) {
+                Some(unit) => Self::Channel(quantity, unit),
+                None => Self::UnitUnknown(quantity, symbol.to_owned()),
+            };
+        }
+        match Quantity::resembling(word) {
+            Some(quantity) => {
+                let symbol = quantity.unit(symbol).unwrap_or(&quantity.units()[0]).symbol;
+                Self::Misspelt(quantity, format!("{quantity}_{symbol}"))
+            }
+            None => Self::Other,
+        }
+    }
+
+    /// The quantity that the name means, rightly spelt or not.
+    pub(crate) fn quantity(&self) -> Option<Quantity> {
+        match self {
+            Self::Channel(quantity, _)
+            | Self::UnitMissing(quantity)
+            | Self::UnitUnknown(quantity, _)
+            | Self::Misspelt(quantity, _) => Some(*quantity),
+            Self::Other => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn si(name: &str, value: f64) -> f64 {
+        match Name::read(name) {
+            Name::Channel(_, unit) => unit.si(value),
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn every_unit_converts_to_si() {
+        let table = [
+            ("time_s", 2.0, 2.0),
+            ("time_ms", 2.0, 0.002),
+            ("time_us", 2.0, 2e-6),
+            ("pressure_Pa", 2.0, 2.0),
+            ("pressure_kPa", 2.0, 2e3),
+            ("pressure_MPa", 2.0, 2e6),
+            ("pressure_bar", 2.0, 2e5),
+            ("length_m", 2.0, 2.0),
+            ("length_cm", 2.0, 0.02),
+            ("length_mm", 159.5, 0.1595),
+            ("length_in", 2.0, 0.0508),
+            ("force_N", 2.0, 2.0),
+            ("force_kN", 2.0, 2e3),
+            ("force_lbf", 2.0, 8.896_443_230_521),
+            ("force_kgf", 2.0, 19.6133),
+            ("temperature_C", 20.0, 293.15),
+            ("temperature_K", 20.0, 20.0),
+        ];
+        for (name, value, expected) in table {
+            assert_eq!(si(name, value), expected, "{name}");
+            assert_eq!(si(&name.to_ascii_uppercase(), value), expected, "{name}");
+        }
+        // NIST SP 811, appendix B: 1 psi = 6894.757 Pa.
+        assert!((si("pressure_psi", 1.0) - 6_894.757_293_168_361).abs() < 1e-9);
+    }
+
+    #[test]
+    fn names_near_a_quantity_are_told_from_other_columns() {
+        for (name, right) in [
+            ("presure_kPa", "pressure_kPa"),
+            ("presure_bar", "pressure_bar"),
+            ("lenght_mm", "length_mm"),
+            ("forze_N", "force_N"),
+            ("tempreature_C", "temperature_C"),
+            ("tiem", "time_s"),
+        ] {
+            assert!(matches!(Name::read(name), Name::Misspelt(_, suggestion) if suggestion == right), "{name}");
+        }
+        for name in
+            ["state_1inflate_2deflate", "torque_Nm", "valve", "source", "tare_N", "ai0", "", "_", "pressure_set_kPa"]
+        {
+            assert_eq!(Name::read(name), Name::Other, "{name}");
+        }
+        assert_eq!(Name::read("force_Nm"), Name::UnitUnknown(Quantity::Force, "Nm".to_owned()));
+        assert_eq!(Name::read("Force"), Name::UnitMissing(Quantity::Force));
+    }
+}
