@@ -62,6 +62,17 @@ impl ForceColumns {
         self.nodes.nodes_per_pa()[NODES - 1]
     }
 
+    /// Compliance, in 1/Pa, that the first column of the braid stands for; its weight is nearly the share of
+    /// that compliance.
+    pub fn first_node_per_pa(&self) -> f64 {
+        self.nodes.nodes_per_pa()[0]
+    }
+
+    /// How eq. 11 is written.
+    pub fn form(&self) -> Form {
+        self.form
+    }
+
     /// Gas term, for what its weights imply.
     pub fn gas(&self) -> &Gas {
         &self.gas

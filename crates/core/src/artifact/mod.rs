@@ -1,0 +1,138 @@
+//! Artifacts: the JSON files that programs hand to one another.
+//!
+//! Every artifact begins with `schema`, `tool`, `inputs`, `config` and `seed`. Equal inputs give equal bytes on
+//! any thread count; time stamps stay out.
+
+pub mod model;
+
+pub use model::ModelArtifact;
+
+use std::path::{Path, PathBuf};
+
+use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+/// Program that wrote an artifact.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tool {
+    /// Name of the program.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+}
+
+/// A file that went into an artifact.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Input {
+    /// Path as given on the command line.
+    pub path: String,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+    /// What it served as.
+    pub role: InputRole,
+}
+
+/// What a file served as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum InputRole {
+    /// Dimensions of the muscle.
+    Muscle,
+    /// Recording that parameters were fitted to.
+    Estimation,
+    /// Recording that was held out.
+    Validation,
+    /// Force model.
+    Model,
+}
+
+/// Why an artifact is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum ArtifactError {
+    /// The file cannot be read.
+    #[error("cannot read {}: {reason}", path.display())]
+    Read {
+        /// File asked for.
+        path: PathBuf,
+        /// What the system said.
+        reason: std::io::Error,
+    },
+    /// The file is no JSON, or lacks what an artifact must have.
+    #[error("{}:{line}:{column}: {reason}; expected a {expected} artifact", path.display())]
+    Parse {
+        /// File being read.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column, counted from 1.
+        column: usize,
+        /// What the parser found.
+        reason: String,
+        /// Schema that was expected.
+        expected: &'static str,
+    },
+    /// The artifact is of another kind or version.
+    #[error("{}: schema is \"{found}\", expected \"{expected}\"; {remedy}", path.display())]
+    Schema {
+        /// File being read.
+        path: PathBuf,
+        /// Schema found.
+        found: String,
+        /// Schema that was expected.
+        expected: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A value that no artifact of this kind has.
+    #[error("{}: {what}; write the artifact anew with its program", path.display())]
+    Implausible {
+        /// File being read.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
+}
+
+/// SHA-256 of `bytes`, hexadecimal.
+pub fn sha256_hex(bytes: &[u8]) -> String {
+    let digest: [u8; 32] = Sha256::digest(bytes).into();
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Reads an artifact of schema `expected`; gives its SHA-256 as well.
+///
+/// # Errors
+/// [`ArtifactError`] names the file and the place.
+pub(crate) fn read<T: DeserializeOwned>(
+    path: &Path,
+    expected: &'static str,
+    program: &'static str,
+) -> Result<(T, String), ArtifactError> {
+    #[derive(Deserialize)]
+    struct Head {
+        schema: String,
+    }
+    let bytes = std::fs::read(path).map_err(|reason| ArtifactError::Read { path: path.to_owned(), reason })?;
+    let parse = |error: &serde_json::Error| ArtifactError::Parse {
+        path: path.to_owned(),
+        line: error.line(),
+        column: error.column(),
+        reason: without_position(&error.to_string()),
+        expected,
+    };
+    let head: Head = serde_json::from_slice(&bytes).map_err(|error| parse(&error))?;
+    if head.schema != expected {
+        return Err(ArtifactError::Schema { path: path.to_owned(), found: head.schema, expected, remedy: program });
+    }
+    let artifact = serde_json::from_slice(&bytes).map_err(|error| parse(&error))?;
+    Ok((artifact, sha256_hex(&bytes)))
+}
+
+/// The message of a JSON error without the position that it ends with.
+fn without_position(message: &str) -> String {
+    message.split(" at line ").next().unwrap_or(message).to_owned()
+}

@@ -1,0 +1,328 @@
+//! `pam-model/1`: an identified force model.
+
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{ArtifactError, Input, Tool};
+use crate::direction::Thresholds;
+use crate::force::{BaseParameters, ForceModel, Form, Parameter};
+use crate::muscle::Muscle;
+use crate::quality::RecordingQuality;
+
+/// Schema name and version.
+pub const SCHEMA: &str = "pam-model/1";
+
+/// An identified force model with everything that later programs need.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModelArtifact {
+    /// `pam-model/1`.
+    pub schema: String,
+    /// Program that wrote it.
+    pub tool: Tool,
+    /// Files that went into it.
+    pub inputs: Vec<Input>,
+    /// Options as resolved.
+    pub config: IdentifyConfig,
+    /// Seed of every random draw.
+    pub seed: u64,
+    /// Dimensions of the muscle, fitted ones as fitted.
+    pub geometry: Muscle,
+    /// Modulus of the strands that their contact was computed with, in Pa.
+    pub strand_modulus_pa: f64,
+    /// How eq. 11 is written.
+    pub form: Form,
+    /// Parameters of eq. 11, and fitted dimensions after them.
+    pub parameters: Vec<ParameterEntry>,
+    /// Sums and products that the data determine where the members cannot be told apart.
+    pub composites: Vec<CompositeEntry>,
+    /// Effects beyond eq. 11.
+    pub effects: Vec<EffectEntry>,
+    /// Correlation between the estimates of the fitted parameters.
+    pub correlation: Correlation,
+    /// How well the model agrees with the recordings.
+    pub fit: FitReport,
+    /// What pressures, lengths and rates the estimation recordings cover.
+    pub domain: Domain,
+    /// Thresholds of the direction of motion.
+    pub direction: Thresholds,
+    /// Quality gate of every recording.
+    pub quality: Vec<RecordingQuality>,
+    /// How the search went.
+    pub search: SearchReport,
+    /// What the same columns reach with weights free of any sign or range; only where asked for.
+    pub unbounded: Option<UnboundedFit>,
+    /// What a person should know before using the model.
+    pub warnings: Vec<String>,
+}
+
+/// Options that a fit was run with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IdentifyConfig {
+    /// Particles of each swarm.
+    pub n_particles: usize,
+    /// Moves of each particle.
+    pub n_iterations: usize,
+    /// Swarms.
+    pub n_starts: usize,
+    /// Whether Levenberg–Marquardt followed the swarm.
+    pub polish: bool,
+    /// Loss: `square` or `huber`.
+    pub loss: Loss,
+    /// Parameters fitted on their own that are otherwise reported as composites.
+    pub freed: Vec<String>,
+    /// Parameters held at a value given by the user.
+    pub fixed: Vec<FixedParameter>,
+    /// `C₀₁ / C₁₀` that their sum is split by.
+    pub bladder_ratio: f64,
+}
+
+/// A parameter held at a value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FixedParameter {
+    /// Name of the parameter.
+    pub name: String,
+    /// Value, in the unit that the artifact writes it in.
+    pub value: f64,
+}
+
+/// What a residual costs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Loss {
+    /// Its square.
+    Square,
+    /// Its square up to 1.345 robust standard deviations, and its absolute value beyond (Huber 1964).
+    Huber,
+}
+
+/// A parameter and what is known of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterEntry {
+    /// `k1`, `k2`, `k3`, `c10`, `c01`, `strand_modulus`, `rubber_friction`, `strand_friction`, or a
+    /// dimension of the muscle.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// Unit; `1` where it has none.
+    pub unit: String,
+    /// Standard error, autocorrelation of the residual respected; none for what was not fitted.
+    pub stderr: Option<f64>,
+    /// How the value came about.
+    pub status: ParameterStatus,
+}
+
+/// How a value came about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ParameterStatus {
+    /// Found by the fit, inside its range.
+    Fitted,
+    /// Not fitted.
+    Fixed,
+    /// One share of a composite: the data determine the composite alone.
+    Composite,
+    /// Pressed against the end of its range.
+    AtBound,
+}
+
+/// A combination of parameters that the data determine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CompositeEntry {
+    /// The combination, as a formula of parameter names.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// Unit.
+    pub unit: String,
+    /// Standard error.
+    pub stderr: Option<f64>,
+    /// Why the members cannot be told apart, in words.
+    pub reason: String,
+}
+
+/// An effect beyond eq. 11.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EffectEntry {
+    /// Catalogue id.
+    pub id: String,
+    /// Its parameters.
+    pub parameters: Vec<ParameterEntry>,
+}
+
+/// Correlation between estimates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Correlation {
+    /// What was fitted, in the order of the matrix; a composite counts once.
+    pub names: Vec<String>,
+    /// Square matrix, row by row.
+    pub matrix: Vec<Vec<f64>>,
+}
+
+/// Agreement between model and recordings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FitReport {
+    /// All estimation recordings together.
+    pub estimation: FitStatistics,
+    /// All validation recordings together, where there are any.
+    pub validation: Option<FitStatistics>,
+    /// Every recording on its own, in the order of the inputs.
+    pub recordings: Vec<RecordingFit>,
+    /// White noise of the force channel over the estimation recordings, in N.
+    pub noise_floor_n: f64,
+    /// Independent samples that the estimation recordings are worth.
+    pub effective_samples: f64,
+}
+
+/// One recording.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RecordingFit {
+    /// Path as given.
+    pub path: String,
+    /// Agreement on it.
+    pub statistics: FitStatistics,
+}
+
+/// Residual, measured less modelled, over the samples whose direction of motion is certain.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FitStatistics {
+    /// Root mean square, in N.
+    pub rmse_n: f64,
+    /// Largest absolute value, in N.
+    pub max_n: f64,
+    /// `1 - Σ residual² / Σ (force - mean)²`.
+    pub r2: f64,
+    /// `100 (1 - ‖residual‖ / ‖force - mean‖)`.
+    pub fit_percent: f64,
+    /// Samples counted.
+    pub n_samples: usize,
+    /// Samples around reversals, which are left out because noise hides the direction there.
+    pub n_unsettled: usize,
+}
+
+/// What the estimation recordings cover.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Domain {
+    /// Lowest and highest gauge pressure, in Pa.
+    pub pressure_pa: [f64; 2],
+    /// Shortest and longest length, in m.
+    pub length_m: [f64; 2],
+    /// Lowest and highest force, in N.
+    pub force_n: [f64; 2],
+    /// Fastest change of length, in m/s.
+    pub length_rate_m_per_s: f64,
+    /// Fastest change of pressure, in Pa/s.
+    pub pressure_rate_pa_per_s: f64,
+}
+
+/// How the search went.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SearchReport {
+    /// Every swarm, in order of its start.
+    pub starts: Vec<StartReport>,
+    /// Whether the best start converged; a pure swarm never claims to.
+    pub converged: bool,
+    /// Lowest RMSE that the columns allow with free weights, in N.
+    pub column_floor_rmse_n: f64,
+}
+
+/// One swarm and what followed it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StartReport {
+    /// RMSE after the swarm, in N.
+    pub swarm_rmse_n: f64,
+    /// RMSE after the polish, in N.
+    pub polished_rmse_n: Option<f64>,
+}
+
+/// Weights of the same columns without signs or ranges.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UnboundedFit {
+    /// RMSE on the estimation recordings, in N.
+    pub estimation_rmse_n: f64,
+    /// RMSE on the validation recordings, in N.
+    pub validation_rmse_n: Option<f64>,
+    /// What the weights would mean as parameters.
+    pub implied: Vec<ImpliedParameter>,
+}
+
+/// A parameter that a free weight stands for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ImpliedParameter {
+    /// Name, or a product of names.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// Unit.
+    pub unit: String,
+    /// Whether a muscle can have it.
+    pub physical: bool,
+}
+
+impl ModelArtifact {
+    /// Reads and checks an artifact; gives its SHA-256 as well.
+    ///
+    /// # Errors
+    /// [`ArtifactError`] names the file, the place and what to do.
+    pub fn read(path: &Path) -> Result<(Self, String), ArtifactError> {
+        let (artifact, sha256): (Self, String) = super::read(path, SCHEMA, "write it with pam-identify")?;
+        artifact.check().map_err(|what| ArtifactError::Implausible { path: path.to_owned(), what })?;
+        Ok((artifact, sha256))
+    }
+
+    fn check(&self) -> Result<(), String> {
+        for parameter in Parameter::ALL {
+            let name = parameter.artifact_name();
+            match self.parameters.iter().filter(|entry| entry.name == name).count() {
+                1 => {}
+                0 => return Err(format!("parameter {name} is missing")),
+                _ => return Err(format!("parameter {name} stands there twice")),
+            }
+        }
+        let modulus = self.value(Parameter::StrandCompliance);
+        if modulus <= 0.0 {
+            return Err(format!("strand_modulus is {modulus}, which no strand has"));
+        }
+        let Muscle { rest_length_m, rest_radius_m, braid_angle_rad, wall_thickness_m, strand_count, strand_diameter_m } =
+            self.geometry;
+        let dimensions =
+            [rest_length_m, rest_radius_m, braid_angle_rad, wall_thickness_m, strand_count, strand_diameter_m];
+        if dimensions.iter().any(|&value| value <= 0.0) || self.strand_modulus_pa <= 0.0 {
+            return Err("a dimension of the muscle is not positive".to_owned());
+        }
+        if let Some(effect) = self.effects.first() {
+            return Err(format!("effect \"{}\" is unknown to this version", effect.id));
+        }
+        Ok(())
+    }
+
+    fn value(&self, parameter: Parameter) -> f64 {
+        let name = parameter.artifact_name();
+        self.parameters.iter().find(|entry| entry.name == name).map_or(f64::NAN, |entry| entry.value)
+    }
+
+    /// Eq. 11 with the values of the artifact.
+    pub fn force_model(&self) -> ForceModel {
+        let mut parameters = BaseParameters { theta: [0.0; 8] };
+        for parameter in Parameter::ALL {
+            parameters.theta[parameter.index()] = parameter.from_artifact(self.value(parameter));
+        }
+        ForceModel::new(&self.geometry, self.strand_modulus_pa, self.form, parameters)
+    }
+}

@@ -1,0 +1,353 @@
+//! Direction of motion of the braid: +1 contracting, -1 extending.
+//!
+//! Friction changes sign with the direction, which a noisy velocity cannot give. The direction is therefore
+//! a *play* on the length: it flips once the length has turned back by a threshold, and is held at
+//! standstill. Where the length stands still and the pressure moves, pressure takes its place: a braid that
+//! is held at its ends still slides under rising (+1, as if contracting) and falling pressure (-1).
+//!
+//! In a recording the future is known, so a flip is dated back to the extreme that it turned at. How exactly
+//! that extreme is known depends on the noise: within the threshold of it, before and after, the direction
+//! is *unsettled*, and a fit does not count those samples.
+//!
+//! # Design
+//! The play acts on a centered moving average, because the range that white noise covers grows without end:
+//! five standard deviations of the raw channel would flip within seconds of a hold. Five of the raw channel
+//! are at least eleven of the average over [`WINDOW_S`] or five samples.
+
+use std::collections::VecDeque;
+use std::io;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::recording::{CHUNK_ROWS, Recording};
+
+/// Length of the moving average, in s; at least five samples and at most 101 are averaged.
+pub const WINDOW_S: f64 = 0.05;
+/// How long the length must stand still before pressure takes its place, in s.
+pub const STANDSTILL_S: f64 = 1.0;
+/// Rows that are worked on at a time; memory across a border between two is a sign and an extreme.
+const STRETCH_ROWS: usize = 1 << 18;
+
+/// Thresholds of the two plays.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Thresholds {
+    /// By how much the length turns back before the direction flips, in m.
+    pub length_m: f64,
+    /// Likewise for the pressure, where the length stands still, in Pa.
+    pub pressure_pa: f64,
+}
+
+/// What the direction follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Driver {
+    /// The length, and the pressure where the length stands still.
+    Motion,
+    /// The pressure alone: "inflation" and "deflation" as the paper prints them.
+    Pressure,
+}
+
+/// Direction of every row of a recording.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Direction {
+    /// ±1, or ±2 where unsettled.
+    marks: Vec<i8>,
+}
+
+impl Direction {
+    /// Directions of `recording`.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of(recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
+        let mut marks = Vec::with_capacity(recording.samples.n_rows());
+        for segment in &recording.segments {
+            let mut carried = 0;
+            for start in segment.clone().step_by(STRETCH_ROWS) {
+                let end = (start + STRETCH_ROWS).min(segment.end);
+                let (time_s, pressure_pa, length_m) = rows(recording, start, end)?;
+                let stretch = marks_of(&time_s, &pressure_pa, &length_m, thresholds, driver, carried);
+                carried = stretch.last().map_or(carried, |mark| mark.signum());
+                marks.extend(stretch);
+            }
+        }
+        Ok(Self { marks })
+    }
+
+    /// Direction of a row, ±1; 0 only where a recording never moves.
+    pub fn sign(&self, row: usize) -> f64 {
+        f64::from(self.marks[row].signum())
+    }
+
+    /// Whether the direction of a row is certain.
+    pub fn is_settled(&self, row: usize) -> bool {
+        self.marks[row].abs() < 2
+    }
+
+    /// Rows whose direction is not certain.
+    pub fn n_unsettled(&self) -> usize {
+        self.marks.iter().filter(|mark| mark.abs() == 2).count()
+    }
+
+    /// Times that the direction flips.
+    pub fn n_reversals(&self) -> usize {
+        self.marks.windows(2).filter(|pair| pair[0].signum() != pair[1].signum()).count()
+    }
+}
+
+type Columns = (Vec<f64>, Vec<f64>, Vec<f64>);
+
+/// Time, pressure and length of rows `start..end`.
+fn rows(recording: &Recording, start: usize, end: usize) -> io::Result<Columns> {
+    let (mut time_s, mut pressure_pa, mut length_m) = (Vec::new(), Vec::new(), Vec::new());
+    for index in start / CHUNK_ROWS..end.div_ceil(CHUNK_ROWS) {
+        let chunk = recording.samples.chunk(index)?;
+        let from = start.max(chunk.first_row()) - chunk.first_row();
+        let to = end.min(chunk.first_row() + chunk.n_rows()) - chunk.first_row();
+        time_s.extend_from_slice(&chunk.time_s()[from..to]);
+        pressure_pa.extend_from_slice(&chunk.pressure_pa()[from..to]);
+        length_m.extend_from_slice(&chunk.length_m()[from..to]);
+    }
+    Ok((time_s, pressure_pa, length_m))
+}
+
+/// Marks of consecutive rows without a gap; `carried` is the direction before them, 0 if unknown.
+fn marks_of(
+    time_s: &[f64],
+    pressure_pa: &[f64],
+    length_m: &[f64],
+    thresholds: Thresholds,
+    driver: Driver,
+    carried: i8,
+) -> Vec<i8> {
+    let n = time_s.len();
+    if n < 2 {
+        return vec![carried; n];
+    }
+    let period_s = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
+    let half = ((0.5 * WINDOW_S / period_s).round() as usize).clamp(2, 50);
+    let mut marks = vec![0; n];
+    if driver == Driver::Pressure {
+        play(&moving_average(pressure_pa, half), thresholds.pressure_pa, carried, &mut marks);
+        fill_unknown(&mut marks);
+        return marks;
+    }
+    let contraction: Vec<f64> = moving_average(length_m, half).iter().map(|length| -length).collect();
+    play(&contraction, thresholds.length_m, carried, &mut marks);
+    let mut pressure: Option<Vec<f64>> = None;
+    for still in standstills(time_s, &contraction, thresholds.length_m) {
+        let pressure = pressure.get_or_insert_with(|| moving_average(pressure_pa, half));
+        let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried };
+        // A standstill in which the pressure rests as well keeps what the length says.
+        if range(&pressure[still.clone()]) > thresholds.pressure_pa {
+            marks[still.clone()].fill(0);
+            play(&pressure[still.clone()], thresholds.pressure_pa, before, &mut marks[still]);
+        }
+    }
+    fill_unknown(&mut marks);
+    marks
+}
+
+/// What moved neither way before the first motion takes the direction of that motion.
+fn fill_unknown(marks: &mut [i8]) {
+    let Some(first) = marks.iter().position(|&mark| mark != 0) else { return };
+    let mut last = marks[first].signum();
+    for mark in marks {
+        if *mark == 0 {
+            *mark = last;
+        }
+        last = mark.signum();
+    }
+}
+
+fn range(values: &[f64]) -> f64 {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &value in values {
+        low = low.min(value);
+        high = high.max(value);
+    }
+    high - low
+}
+
+/// Centered average over `2 half + 1` values, over fewer and still centered at the ends.
+fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
+    // Sums relative to the first value, so that a long recording loses no digits.
+    let origin = values[0];
+    let mut sums = Vec::with_capacity(values.len() + 1);
+    let mut sum = 0.0;
+    sums.push(0.0);
+    for &value in values {
+        sum += value - origin;
+        sums.push(sum);
+    }
+    (0..values.len())
+        .map(|index| {
+            let reach = half.min(index).min(values.len() - 1 - index);
+            origin + (sums[index + reach + 1] - sums[index - reach]) / (2 * reach + 1) as f64
+        })
+        .collect()
+}
+
+/// The play operator with flips dated back to their extremes. `marks` becomes ±1, ±2 within `threshold`
+/// of an extreme that the direction flipped at, and 0 before the first motion if `carried` is 0.
+fn play(values: &[f64], threshold: f64, carried: i8, marks: &mut [i8]) {
+    let Some(&first) = values.first() else { return };
+    let mut sign = carried;
+    // Both extremes while the direction is unknown; only the leading one counts afterwards.
+    let (mut high, mut high_at) = (first, 0);
+    let (mut low, mut low_at) = (first, 0);
+    // Approach to the leading extreme: values, seen in the direction of motion, of which all later are higher.
+    let mut approach: VecDeque<(usize, f64)> = VecDeque::new();
+    for (index, &value) in values.iter().enumerate() {
+        if value > high {
+            (high, high_at) = (value, index);
+        }
+        if value < low {
+            (low, low_at) = (value, index);
+        }
+        let turned = match sign {
+            0 if high - low > threshold => Some(if high_at > low_at { 1 } else { -1 }),
+            1 if high - value > threshold => Some(-1),
+            -1 if value - low > threshold => Some(1),
+            _ => None,
+        };
+        let ahead = |sign: i8| if sign < 0 { -value } else { value };
+        if let Some(new_sign) = turned {
+            let extreme_at = if new_sign > 0 { low_at } else { high_at };
+            if sign != 0 {
+                let extreme = if sign > 0 { high } else { -low };
+                // The last value on the way to the extreme that was still a threshold away from it.
+                let near =
+                    approach.iter().rev().find(|(_, value)| *value <= extreme - threshold).map_or(0, |(at, _)| at + 1);
+                marks[near..extreme_at].fill(2 * sign);
+                marks[extreme_at..index].fill(2 * new_sign);
+            } else {
+                marks[extreme_at..index].fill(new_sign);
+            }
+            sign = new_sign;
+            (high, high_at, low, low_at) = (value, index, value, index);
+            approach.clear();
+        } else if sign > 0 && value >= high {
+            (low, low_at) = (value, index);
+        } else if sign < 0 && value <= low {
+            (high, high_at) = (value, index);
+        }
+        marks[index] = sign;
+        if sign != 0 {
+            let value = ahead(sign);
+            while approach.back().is_some_and(|&(_, earlier)| earlier >= value) {
+                approach.pop_back();
+            }
+            approach.push_back((index, value));
+            let extreme = if sign > 0 { high } else { -low };
+            while approach.len() > 1 && approach[1].1 <= extreme - threshold {
+                approach.pop_front();
+            }
+        }
+    }
+}
+
+/// Stretches of at least [`STANDSTILL_S`] in which the values stay within half a threshold of where the
+/// stretch began.
+fn standstills(time_s: &[f64], values: &[f64], threshold: f64) -> Vec<std::ops::Range<usize>> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    let (mut low, mut high) = (values[0], values[0]);
+    for index in 0..=values.len() {
+        if index < values.len() {
+            low = low.min(values[index]);
+            high = high.max(values[index]);
+            if high - low <= threshold {
+                continue;
+            }
+        }
+        if time_s[index - 1] - time_s[start] >= STANDSTILL_S {
+            found.push(start..index);
+        }
+        if index < values.len() {
+            (start, low, high) = (index, values[index], values[index]);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+
+    const THRESHOLDS: Thresholds = Thresholds { length_m: 150e-6, pressure_pa: 2e3 };
+
+    fn noise(n: usize, sigma: f64, seed: u64) -> Vec<f64> {
+        let normal = Normal::new(0.0, sigma).unwrap();
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(seed);
+        (0..n).map(|_| normal.sample(&mut generator)).collect()
+    }
+
+    fn times(n: usize) -> Vec<f64> {
+        (0..n).map(|index| index as f64 * 0.005).collect()
+    }
+
+    /// A triangle of 40 mm at 5 mm/s, 200 Hz, with 30 µm of noise: 8 s each way.
+    #[test]
+    fn a_noisy_triangle_flips_once_per_turn() {
+        let n = 6400;
+        let truth: Vec<f64> = (0..n)
+            .map(|i| {
+                let phase = i % 3200;
+                0.267 - if phase < 1600 { phase as f64 } else { (3200 - phase) as f64 } * 25e-6
+            })
+            .collect();
+        let noise = noise(n, 30e-6, 1);
+        let length: Vec<f64> = truth.iter().zip(&noise).map(|(l, e)| l + e).collect();
+        let marks = marks_of(&times(n), &vec![3e5; n], &length, THRESHOLDS, Driver::Motion, 0);
+        let flips = marks.windows(2).filter(|pair| pair[0].signum() != pair[1].signum()).count();
+        assert_eq!(flips, 3);
+        // Settled marks are never wrong, and only a few are unsettled.
+        for (index, mark) in marks.iter().enumerate() {
+            let expected = if index % 3200 < 1600 { 1 } else { -1 };
+            assert!(*mark == expected || mark.abs() == 2, "row {index}: {mark}");
+        }
+        let unsettled = marks.iter().filter(|mark| mark.abs() == 2).count();
+        assert!((10..80).contains(&unsettled), "{unsettled}");
+    }
+
+    #[test]
+    fn noise_on_a_long_hold_never_flips_the_direction() {
+        let n = 200_000;
+        let mut length: Vec<f64> = (0..1000).map(|i| 0.267 - i as f64 * 25e-6).collect();
+        length.extend(vec![0.267 - 1000.0 * 25e-6; n - 1000]);
+        for (value, noise) in length.iter_mut().zip(noise(n, 30e-6, 2)) {
+            *value += noise;
+        }
+        let marks = marks_of(&times(n), &vec![3e5; n], &length, THRESHOLDS, Driver::Motion, 0);
+        assert!(marks.iter().all(|mark| mark.signum() == 1));
+    }
+
+    #[test]
+    fn pressure_takes_the_place_of_a_length_that_stands_still() {
+        let n = 4000;
+        let pressure: Vec<f64> = (0..n).map(|i| if i < 2000 { i as f64 } else { (4000 - i) as f64 } * 200.0).collect();
+        let marks = marks_of(&times(n), &pressure, &vec![0.25; n], THRESHOLDS, Driver::Motion, 0);
+        for (index, mark) in marks.iter().enumerate() {
+            let expected = if index < 2000 { 1 } else { -1 };
+            assert!(*mark == expected || (mark.abs() == 2 && index.abs_diff(2000) < 30), "row {index}: {mark}");
+        }
+    }
+
+    #[test]
+    fn a_hold_at_constant_pressure_keeps_the_last_direction() {
+        let n = 3000;
+        let length: Vec<f64> = (0..n).map(|i| 0.26 - (i.min(1000)) as f64 * 20e-6).collect();
+        let marks = marks_of(&times(n), &vec![2e5; n], &length, THRESHOLDS, Driver::Motion, 0);
+        assert!(marks.iter().all(|&mark| mark == 1));
+    }
+
+    #[test]
+    fn a_recording_that_never_moves_has_no_direction() {
+        let marks = marks_of(&times(500), &vec![2e5; 500], &vec![0.25; 500], THRESHOLDS, Driver::Motion, 0);
+        assert!(marks.iter().all(|&mark| mark == 0));
+    }
+}

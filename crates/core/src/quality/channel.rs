@@ -1,0 +1,181 @@
+//! One column of a recording: range, noise, quantization, clipping.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What a channel looks like, in SI.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ChannelQuality {
+    /// `pressure`, `length` or `force`.
+    pub name: String,
+    /// SI unit of the figures here.
+    pub unit: String,
+    /// Lowest value.
+    pub lowest: f64,
+    /// Highest value.
+    pub highest: f64,
+    /// Standard deviation of the white part of the noise, quantization included.
+    pub noise: f64,
+    /// Smallest step between values, where the channel has one.
+    pub quantization_step: Option<f64>,
+    /// Share of samples stuck at the lowest value, where the noise says that they should flicker.
+    pub clipped_low_share: f64,
+    /// Share of samples stuck at the highest value, likewise.
+    pub clipped_high_share: f64,
+}
+
+impl ChannelQuality {
+    /// Whether the channel moves by more than its noise explains.
+    pub fn varies(&self) -> bool {
+        // White noise covers some ten standard deviations in a million samples.
+        self.highest - self.lowest > 12.0 * self.noise
+    }
+
+    /// Five times the noise: by how much a channel must turn back before it counts as turned.
+    pub fn play_threshold(&self) -> f64 {
+        5.0 * self.noise
+    }
+}
+
+/// Length of a run of equal values that counts as stuck.
+const STUCK_RUN: usize = 10;
+/// Values that the estimates of noise and quantization look at.
+pub(super) const SAMPLE_ROWS: usize = 1 << 16;
+
+/// Standard deviation of white noise on a smooth signal, from second differences (variance `6 σ²`), which
+/// straight lines leave at zero. Differences beyond four of their standard deviations belong to the
+/// signal and are left out.
+pub fn noise_std(values: &[f64]) -> f64 {
+    let squares: Vec<f64> = values
+        .windows(3)
+        .map(|window| {
+            let difference = window[0] - 2.0 * window[1] + window[2];
+            difference * difference
+        })
+        .collect();
+    if squares.is_empty() {
+        return 0.0;
+    }
+    let mut mean = squares.iter().sum::<f64>() / squares.len() as f64;
+    for _ in 0..20 {
+        let (mut sum, mut count) = (0.0, 0usize);
+        for &square in &squares {
+            if square <= 16.0 * mean {
+                sum += square;
+                count += 1;
+            }
+        }
+        let kept = if count > 0 { sum / count as f64 } else { 0.0 };
+        if (kept - mean).abs() <= 1e-9 * mean {
+            break;
+        }
+        mean = kept;
+    }
+    (mean / 6.0).sqrt()
+}
+
+/// The step of a quantized channel: the smallest distance between two of its values, if all distances are
+/// multiples of it and it is not just the last printed digit of a fine channel.
+pub fn quantization_step(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let span = sorted.last()? - sorted.first()?;
+    let tiny = 1e-9 * span;
+    let gaps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|&gap| gap > tiny).collect();
+    let step = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    if !step.is_finite() {
+        return None;
+    }
+    // Printed digits round each value, so that the smallest gap may be off by a few per mille.
+    let multiples =
+        gaps.iter().filter(|&&gap| (gap / step - (gap / step).round()).abs() < 0.05 * (gap / step).max(1.0).min(4.0));
+    let few_values = span / step < 70_000.0;
+    (few_values && multiples.count() as f64 > 0.98 * gaps.len() as f64).then_some(step)
+}
+
+/// Counts samples stuck at the ends of a channel, over consecutive values.
+#[derive(Debug)]
+pub(super) struct StuckCounter {
+    lowest: f64,
+    highest: f64,
+    run_value: f64,
+    run: usize,
+    low: usize,
+    high: usize,
+    total: usize,
+}
+
+impl StuckCounter {
+    pub(super) fn new(lowest: f64, highest: f64) -> Self {
+        Self { lowest, highest, run_value: f64::NAN, run: 0, low: 0, high: 0, total: 0 }
+    }
+
+    pub(super) fn push(&mut self, value: f64) {
+        self.total += 1;
+        if value == self.run_value {
+            self.run += 1;
+        } else {
+            self.close();
+            self.run_value = value;
+            self.run = 1;
+        }
+    }
+
+    fn close(&mut self) {
+        if self.run >= STUCK_RUN {
+            if self.run_value == self.lowest {
+                self.low += self.run;
+            } else if self.run_value == self.highest {
+                self.high += self.run;
+            }
+        }
+    }
+
+    /// Shares stuck at the lowest and at the highest value.
+    pub(super) fn shares(mut self) -> (f64, f64) {
+        self.close();
+        let total = self.total.max(1) as f64;
+        (self.low as f64 / total, self.high as f64 / total)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+
+    fn noisy_ramp(sigma: f64) -> Vec<f64> {
+        let normal = Normal::new(0.0, sigma).unwrap();
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(5);
+        (0..20_000).map(|i| 0.01 * f64::from(i) + normal.sample(&mut generator)).collect()
+    }
+
+    #[test]
+    fn noise_on_a_ramp_with_jumps_is_found() {
+        let mut values = noisy_ramp(0.2);
+        for (index, value) in values.iter_mut().enumerate() {
+            *value += (index / 1000) as f64 * 7.0;
+        }
+        assert!((noise_std(&values) - 0.2).abs() < 0.005, "{}", noise_std(&values));
+    }
+
+    #[test]
+    fn a_quantized_channel_shows_its_step_and_a_fine_one_shows_none() {
+        let coarse: Vec<f64> = noisy_ramp(0.9).iter().map(|v| (v / 0.683).round() * 0.683).collect();
+        let printed: Vec<f64> = coarse.iter().map(|v| (v * 1e4).round() * 1e-4).collect();
+        assert!((quantization_step(&printed).unwrap() - 0.683).abs() < 1e-3);
+        assert_eq!(quantization_step(&noisy_ramp(0.9)), None);
+        assert_eq!(quantization_step(&[3.0; 100]), None);
+    }
+
+    #[test]
+    fn a_channel_stuck_at_its_end_is_counted() {
+        let mut counter = StuckCounter::new(-9.0, 5.0);
+        for index in 0..100 {
+            counter.push(if index < 40 { -9.0 } else { f64::from(index % 7) - 1.0 });
+        }
+        assert_eq!(counter.shares(), (0.4, 0.0));
+    }
+}

@@ -1,0 +1,59 @@
+//! Why a fit cannot be done.
+
+use std::io;
+
+/// Why a fit cannot be done; every message names the place and the remedy.
+#[derive(Debug, thiserror::Error)]
+pub enum IdentifyError {
+    /// The samples of a recording cannot be read back.
+    #[error("{path}: cannot read the samples back from the temporary file: {reason}; set TMPDIR to a folder with room")]
+    Samples {
+        /// Recording.
+        path: String,
+        /// What the system said.
+        reason: io::Error,
+    },
+    /// A recording has no force, which a fit needs.
+    #[error("{path}: no force was recorded, and there is nothing to fit to; name the column with --map")]
+    NoForce {
+        /// Recording.
+        path: String,
+    },
+    /// Pressure is the same throughout.
+    #[error(
+        "{path}: pressure stays at {pressure_kpa:.1} kPa in every estimation recording, which cannot tell the \
+         gas from the rubber; add a recording at another pressure"
+    )]
+    ConstantPressure {
+        /// First estimation recording.
+        path: String,
+        /// Where it stays.
+        pressure_kpa: f64,
+    },
+    /// Too few samples with a certain direction.
+    #[error("{path}: {n_samples} samples with a certain direction for {n_parameters} parameters; record for longer")]
+    TooFewSamples {
+        /// First estimation recording.
+        path: String,
+        /// Samples.
+        n_samples: usize,
+        /// Parameters.
+        n_parameters: usize,
+    },
+    /// Something about the instruments is wrong before any physics is.
+    #[error("{0}")]
+    Fault(crate::faults::Fault),
+    /// A length at which the braid or the bladder does not exist.
+    #[error(
+        "{path}: length reaches {length_mm:.2} mm, where a braid with strands of {strand_mm:.2} mm is stretched \
+         straight; check rest_length_mm and braid_angle_deg in the muscle file"
+    )]
+    LengthBeyondStrand {
+        /// Recording.
+        path: String,
+        /// Longest length.
+        length_mm: f64,
+        /// Length of a strand.
+        strand_mm: f64,
+    },
+}

@@ -1,0 +1,176 @@
+//! A model against recordings: statistics of the residual, and traces for figures.
+
+use pam_core::artifact::model::FitStatistics;
+use pam_core::force::ForceModel;
+use pam_core::recording::CHUNK_ROWS;
+use rayon::prelude::*;
+
+use crate::error::IdentifyError;
+use crate::prepare::Prepared;
+
+/// Most samples of one recording that a trace keeps.
+const TRACE_SAMPLES: usize = 40_000;
+
+/// Sums over samples whose direction is settled.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    n_samples: usize,
+    n_unsettled: usize,
+    residual_squares: f64,
+    largest: f64,
+    forces: f64,
+    force_squares: f64,
+    first_force_n: f64,
+}
+
+impl Tally {
+    fn push(&mut self, force_n: f64, model_n: f64) {
+        let residual_n = force_n - model_n;
+        if !residual_n.is_finite() {
+            return;
+        }
+        if self.n_samples == 0 {
+            self.first_force_n = force_n;
+        }
+        self.n_samples += 1;
+        self.residual_squares += residual_n * residual_n;
+        self.largest = self.largest.max(residual_n.abs());
+        // Relative to the first force, so that a large mean costs no digits.
+        let relative_n = force_n - self.first_force_n;
+        self.forces += relative_n;
+        self.force_squares += relative_n * relative_n;
+    }
+
+    fn merge(&mut self, other: &Self) {
+        if other.n_samples == 0 {
+            self.n_unsettled += other.n_unsettled;
+            return;
+        }
+        if self.n_samples == 0 {
+            self.first_force_n = other.first_force_n;
+        }
+        let shift_n = other.first_force_n - self.first_force_n;
+        let n = other.n_samples as f64;
+        self.force_squares += other.force_squares + 2.0 * shift_n * other.forces + n * shift_n * shift_n;
+        self.forces += other.forces + n * shift_n;
+        self.n_samples += other.n_samples;
+        self.n_unsettled += other.n_unsettled;
+        self.residual_squares += other.residual_squares;
+        self.largest = self.largest.max(other.largest);
+    }
+
+    fn statistics(&self) -> FitStatistics {
+        let n = self.n_samples.max(1) as f64;
+        let spread = (self.force_squares - self.forces * self.forces / n).max(f64::MIN_POSITIVE);
+        let share = self.residual_squares / spread;
+        FitStatistics {
+            rmse_n: (self.residual_squares / n).sqrt(),
+            max_n: self.largest,
+            r2: 1.0 - share,
+            fit_percent: 100.0 * (1.0 - share.sqrt()),
+            n_samples: self.n_samples,
+            n_unsettled: self.n_unsettled,
+        }
+    }
+}
+
+/// Samples of one recording beside what the model says, thinned out evenly where there are many.
+#[derive(Debug, Clone, Default)]
+pub struct Trace {
+    /// Time, in s.
+    pub time_s: Vec<f64>,
+    /// Gauge pressure, in Pa.
+    pub pressure_pa: Vec<f64>,
+    /// Length, in m.
+    pub length_m: Vec<f64>,
+    /// Force as measured, in N.
+    pub force_n: Vec<f64>,
+    /// Force as modelled, in N.
+    pub model_n: Vec<f64>,
+    /// Direction of motion: +1 contracting, -1 extending.
+    pub direction: Vec<f64>,
+    /// Whether the direction is certain.
+    pub settled: Vec<bool>,
+}
+
+/// Statistics of every recording and of all together.
+#[derive(Debug, Clone)]
+pub struct Evaluation {
+    /// All recordings together; none where there are no recordings.
+    pub together: Option<FitStatistics>,
+    /// Each recording, in order.
+    pub each: Vec<FitStatistics>,
+}
+
+/// Compares `model` with `recordings`.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn evaluate(recordings: &[Prepared], model: &ForceModel) -> Result<Evaluation, IdentifyError> {
+    let mut together = Tally::default();
+    let mut each = Vec::new();
+    for prepared in recordings {
+        let tally = tally(prepared, model)
+            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+        together.merge(&tally);
+        each.push(tally.statistics());
+    }
+    Ok(Evaluation { together: (!recordings.is_empty()).then(|| together.statistics()), each })
+}
+
+fn tally(prepared: &Prepared, model: &ForceModel) -> std::io::Result<Tally> {
+    let samples = &prepared.recording.samples;
+    let parts: std::io::Result<Vec<Tally>> = (0..samples.n_chunks())
+        .into_par_iter()
+        .map(|index| {
+            let chunk = samples.chunk(index)?;
+            let mut tally = Tally::default();
+            let (pressure_pa, length_m, force_n) = (chunk.pressure_pa(), chunk.length_m(), chunk.force_n());
+            for here in 0..chunk.n_rows() {
+                let row = chunk.first_row() + here;
+                if prepared.direction.is_settled(row) {
+                    let model_n = model.force_n(pressure_pa[here], length_m[here], prepared.direction.sign(row));
+                    tally.push(force_n[here], model_n);
+                } else {
+                    tally.n_unsettled += 1;
+                }
+            }
+            Ok(tally)
+        })
+        .collect();
+    let mut total = Tally::default();
+    for part in parts? {
+        total.merge(&part);
+    }
+    Ok(total)
+}
+
+/// Samples of `prepared` beside what `model` says.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn trace(prepared: &Prepared, model: &ForceModel) -> Result<Trace, IdentifyError> {
+    let samples = &prepared.recording.samples;
+    let stride = samples.n_rows().div_ceil(TRACE_SAMPLES).max(1);
+    let mut trace = Trace::default();
+    let mut row = 0;
+    while row < samples.n_rows() {
+        let chunk = samples
+            .chunk(row / CHUNK_ROWS)
+            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+        while row < chunk.first_row() + chunk.n_rows() {
+            let here = row - chunk.first_row();
+            let (pressure_pa, length_m) = (chunk.pressure_pa()[here], chunk.length_m()[here]);
+            let direction = prepared.direction.sign(row);
+            trace.time_s.push(chunk.time_s()[here]);
+            trace.pressure_pa.push(pressure_pa);
+            trace.length_m.push(length_m);
+            trace.force_n.push(chunk.force_n()[here]);
+            trace.model_n.push(model.force_n(pressure_pa, length_m, direction));
+            trace.direction.push(direction);
+            trace.settled.push(prepared.direction.is_settled(row));
+            row += stride;
+        }
+    }
+    Ok(trace)
+}

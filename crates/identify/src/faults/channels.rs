@@ -1,0 +1,176 @@
+//! Channels that are swapped or turned, and recordings that contradict one another.
+
+use std::collections::BTreeMap;
+
+use pam_core::muscle::Muscle;
+use pam_core::recording::Recording;
+
+use super::Fault;
+use crate::prepare::Gated;
+
+/// Samples looked at, about, spread over a recording.
+const LOOKS: usize = 4096;
+
+/// A few thousand samples of a recording, in SI.
+#[derive(Debug)]
+pub struct Look {
+    pressure_pa: Vec<f64>,
+    length_m: Vec<f64>,
+    force_n: Vec<f64>,
+}
+
+impl Look {
+    /// Every so-many-th sample.
+    ///
+    /// # Errors
+    /// Where samples cannot be read back.
+    pub fn at(recording: &Recording) -> std::io::Result<Self> {
+        let stride = (recording.samples.n_rows() / LOOKS).max(1);
+        let mut look = Self { pressure_pa: Vec::new(), length_m: Vec::new(), force_n: Vec::new() };
+        for chunk in recording.samples.chunks() {
+            let chunk = chunk?;
+            let first = chunk.first_row().next_multiple_of(stride) - chunk.first_row();
+            for here in (first..chunk.n_rows()).step_by(stride) {
+                look.pressure_pa.push(chunk.pressure_pa()[here]);
+                look.length_m.push(chunk.length_m()[here]);
+                look.force_n.push(chunk.force_n()[here]);
+            }
+        }
+        Ok(look)
+    }
+}
+
+/// Correlation between `force` and an ideal muscle's; free of scale, so that a unit slip does not matter.
+fn ideal_correlation(muscle: &Muscle, pressure: &[f64], length_m: &[f64], force: &[f64]) -> f64 {
+    let gas = pam_core::force::gas::Gas::new(muscle);
+    let ideal: Vec<f64> = pressure
+        .iter()
+        .zip(length_m)
+        .map(|(&pressure, &length)| gas.force_n(pressure, muscle.contraction_ratio(length), 1.0, 1.0))
+        .collect();
+    correlation(&ideal, force)
+}
+
+fn correlation(left: &[f64], right: &[f64]) -> f64 {
+    let n = left.len().max(1) as f64;
+    let (mean_left, mean_right) = (left.iter().sum::<f64>() / n, right.iter().sum::<f64>() / n);
+    let (mut cross, mut squares_left, mut squares_right) = (0.0, 0.0, 0.0);
+    for (left, right) in left.iter().zip(right) {
+        cross += (left - mean_left) * (right - mean_right);
+        squares_left += (left - mean_left).powi(2);
+        squares_right += (right - mean_right).powi(2);
+    }
+    let scale = (squares_left * squares_right).sqrt();
+    if scale > 0.0 { cross / scale } else { 0.0 }
+}
+
+/// Lengths in m if the numbers of a channel were millimeters under its name: the scale that brings them
+/// nearest to the rest length.
+fn as_length_m(values: &[f64], muscle: &Muscle) -> Option<Vec<f64>> {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    (-8..=3)
+        .map(|power| 10_f64.powi(power))
+        .find(|scale| (0.55..1.08).contains(&(mean * scale / muscle.rest_length_m)))
+        .map(|scale| values.iter().map(|value| value * scale).collect())
+}
+
+/// Channels that follow an ideal muscle only after two of them are exchanged.
+pub fn swapped(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
+    let as_is = ideal_correlation(muscle, &look.pressure_pa, &look.length_m, &look.force_n);
+    if as_is.is_finite() && as_is.abs() > 0.7 && lengths_fit(&look.length_m, muscle) {
+        return None;
+    }
+    let mut candidates: Vec<(&'static str, &'static str, f64)> = Vec::new();
+    if lengths_fit(&look.length_m, muscle) {
+        candidates.push((
+            "pressure",
+            "force",
+            ideal_correlation(muscle, &look.force_n, &look.length_m, &look.pressure_pa),
+        ));
+    }
+    if let Some(length_m) = as_length_m(&look.pressure_pa, muscle) {
+        candidates.push(("pressure", "length", ideal_correlation(muscle, &look.length_m, &length_m, &look.force_n)));
+    }
+    if let Some(length_m) = as_length_m(&look.force_n, muscle) {
+        candidates.push(("length", "force", ideal_correlation(muscle, &look.pressure_pa, &length_m, &look.length_m)));
+    }
+    let mut best: Option<(&'static str, &'static str, f64)> = None;
+    for candidate in candidates {
+        if candidate.2 > 0.9 && best.is_none_or(|best| candidate.2 > best.2) {
+            best = Some(candidate);
+        }
+    }
+    let (first, second, swapped) = best?;
+    let as_is = if as_is.is_finite() { as_is } else { 0.0 };
+    Some(Fault::Swapped { path: gate.recording.path.clone(), first, second, as_is, swapped })
+}
+
+fn lengths_fit(length_m: &[f64], muscle: &Muscle) -> bool {
+    length_m.iter().all(|&length| (-0.1..0.5).contains(&muscle.contraction_ratio(length)))
+}
+
+/// A force that falls where an ideal muscle's rises.
+pub fn wrong_sign(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
+    let correlation = ideal_correlation(muscle, &look.pressure_pa, &look.length_m, &look.force_n);
+    (correlation < -0.6).then(|| Fault::WrongSign {
+        path: gate.recording.path.clone(),
+        correlation,
+        remedy: "force_N = -1 * force_N",
+    })
+}
+
+/// Recordings whose forces differ by more than hysteresis and noise can make, at equal pressure and length.
+///
+/// # Errors
+/// Where samples cannot be read back.
+pub fn disagreeing(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> {
+    let highest_pa = gates
+        .iter()
+        .filter_map(|gate| gate.quality.channel("pressure"))
+        .map(|channel| channel.highest)
+        .fold(0.0, f64::max);
+    let mut tables: Vec<BTreeMap<(i64, i64), f64>> = Vec::new();
+    for gate in gates {
+        let look = Look::at(&gate.recording)?;
+        let mut sums: BTreeMap<(i64, i64), (f64, f64)> = BTreeMap::new();
+        for ((&pressure_pa, &length_m), &force_n) in look.pressure_pa.iter().zip(&look.length_m).zip(&look.force_n) {
+            // Cells of 4 % of the highest pressure and half a percent of contraction.
+            let cell = (
+                (25.0 * pressure_pa / highest_pa).round() as i64,
+                (200.0 * muscle.contraction_ratio(length_m)).round() as i64,
+            );
+            // Low pressures hold slack and dead band, where ratios mean nothing.
+            if pressure_pa > 0.3 * highest_pa {
+                let sum = sums.entry(cell).or_default();
+                *sum = (sum.0 + force_n, sum.1 + 1.0);
+            }
+        }
+        tables.push(sums.into_iter().map(|(cell, (sum, count))| (cell, sum / count)).collect());
+    }
+    for (index, table) in tables.iter().enumerate() {
+        for (other, earlier) in tables[..index].iter().enumerate() {
+            let mut ratios: Vec<f64> = table
+                .iter()
+                .filter_map(|(cell, force_n)| earlier.get(cell).map(|other_n| (force_n, other_n)))
+                .filter(|(_, other_n)| other_n.abs() > 1.0)
+                .map(|(force_n, other_n)| force_n / other_n)
+                .collect();
+            if ratios.len() < 4 {
+                continue;
+            }
+            ratios.sort_unstable_by(f64::total_cmp);
+            let ratio = ratios[ratios.len() / 2];
+            if !(1.0 / MOST_DIFFERENT..=MOST_DIFFERENT).contains(&ratio) {
+                return Ok(Some(Fault::Disagree {
+                    path: gates[index].recording.path.clone(),
+                    other: gates[other].recording.path.clone(),
+                    ratio,
+                }));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Ratio of forces that hysteresis, drift and a little gain explain at most.
+const MOST_DIFFERENT: f64 = 1.4;

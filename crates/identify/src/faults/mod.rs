@@ -1,0 +1,116 @@
+//! Instrument faults, looked for before any physics is.
+//!
+//! [`ranges`] finds units under the wrong name and recordings of another muscle from ranges alone;
+//! [`channels`] finds swapped channels, a force of the wrong sign and recordings that disagree with one another;
+//! [`lag`] finds a channel that lags the others. The first two refuse the recording, because a fit
+//! would absorb the fault in its parameters; a lag is a warning.
+
+pub mod channels;
+pub mod lag;
+pub mod ranges;
+
+use crate::prepare::Gated;
+use pam_core::muscle::Muscle;
+
+/// A fault that makes a fit pointless.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Fault {
+    /// A channel is a known factor away from what a muscle has.
+    #[error(
+        "{path}: {channel} reaches {reached}, {factor} times too {direction}; {guess}; name the unit of the column \
+         with --map, or go on with --accept-implausible"
+    )]
+    UnitSlip {
+        /// Recording.
+        path: String,
+        /// Channel.
+        channel: &'static str,
+        /// Extreme value with its unit.
+        reached: String,
+        /// How far off, as a power or ratio of units.
+        factor: String,
+        /// `high` or `low`.
+        direction: &'static str,
+        /// Which units may have been mixed up.
+        guess: &'static str,
+    },
+    /// Lengths that the muscle of the muscle file cannot have.
+    #[error(
+        "{path}: length runs from {shortest_mm:.1} to {longest_mm:.1} mm, which a muscle of rest length \
+         {rest_mm:.1} mm cannot have ({reason}); check that the recording and the muscle file belong together, or go \
+         on with --accept-implausible"
+    )]
+    AnotherMuscle {
+        /// Recording.
+        path: String,
+        /// Shortest length.
+        shortest_mm: f64,
+        /// Longest length.
+        longest_mm: f64,
+        /// Rest length of the muscle file.
+        rest_mm: f64,
+        /// What is impossible about it.
+        reason: &'static str,
+    },
+    /// Force falls as pressure rises.
+    #[error(
+        "{path}: force falls as pressure rises (correlation {correlation:.2}), so its sign is turned; tension is \
+         positive: add --calibrate '{remedy}', or go on with --accept-implausible"
+    )]
+    WrongSign {
+        /// Recording.
+        path: String,
+        /// Correlation between force and what an ideal muscle does.
+        correlation: f64,
+        /// Calibration that turns it.
+        remedy: &'static str,
+    },
+    /// Two channels fit a muscle better the other way round.
+    #[error(
+        "{path}: {first} and {second} look swapped (correlation with an ideal muscle {as_is:.2} as they are, \
+         {swapped:.2} the other way round); exchange their names with --map, or go on with --accept-implausible"
+    )]
+    Swapped {
+        /// Recording.
+        path: String,
+        /// One channel.
+        first: &'static str,
+        /// The other.
+        second: &'static str,
+        /// Correlation as recorded.
+        as_is: f64,
+        /// Correlation the other way round.
+        swapped: f64,
+    },
+    /// Two recordings that cannot be of one muscle on one bench.
+    #[error(
+        "{path}: at equal pressure and length the force is {ratio:.2} times that of {other}; they are of different \
+         muscles, or a gain changed between them: identify them apart, or go on with --accept-implausible"
+    )]
+    Disagree {
+        /// Recording.
+        path: String,
+        /// The one that it disagrees with.
+        other: String,
+        /// Median ratio of forces.
+        ratio: f64,
+    },
+}
+
+/// Looks for faults that make a fit pointless; the first is returned.
+///
+/// # Errors
+/// [`std::io::Error`] where samples cannot be read back.
+pub fn find(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> {
+    for gate in gates {
+        let looks = channels::Look::at(&gate.recording)?;
+        // Swapped channels have implausible ranges, too, and are the better explanation.
+        let fault = channels::swapped(gate, &looks, muscle)
+            .or_else(|| ranges::check(gate, muscle))
+            .or_else(|| channels::wrong_sign(gate, &looks, muscle));
+        if fault.is_some() {
+            return Ok(fault);
+        }
+    }
+    channels::disagreeing(gates, muscle)
+}

@@ -1,0 +1,101 @@
+//! The search: several swarms, each followed by a descent.
+
+use std::ops::ControlFlow;
+
+use pam_optim::polish::{Polished, Residuals, descend};
+use pam_optim::swarm::{SwarmOptions, SwarmResult, minimize};
+use rayon::prelude::*;
+
+use crate::problem::ForceProblem;
+
+/// Size of the search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FitOptions {
+    /// Particles of each swarm.
+    pub n_particles: usize,
+    /// Moves of each particle.
+    pub n_iterations: usize,
+    /// Swarms.
+    pub n_starts: usize,
+    /// Seed of every random draw.
+    pub seed: u64,
+    /// Whether Levenberg–Marquardt follows.
+    pub polish: bool,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self { n_particles: 60, n_iterations: 200, n_starts: 4, seed: 1, polish: true }
+    }
+}
+
+/// One swarm and what followed it.
+#[derive(Debug, Clone)]
+pub struct Start {
+    /// What the swarm found; its costs are mean squares, in N².
+    pub swarm: SwarmResult,
+    /// Where the descent ended; its cost is half a mean square.
+    pub polished: Option<Polished>,
+}
+
+impl Start {
+    /// Mean square at the end, in N².
+    pub fn mean_square(&self) -> f64 {
+        self.polished.as_ref().map_or(self.swarm.best_cost, |polished| 2.0 * polished.cost)
+    }
+}
+
+/// Outcome of a search.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// Best point of the unit box.
+    pub x: Vec<f64>,
+    /// Coordinates that press against the box.
+    pub at_bound: Vec<bool>,
+    /// Mean square there, in N².
+    pub mean_square: f64,
+    /// Whether the best start converged; a pure swarm never claims to.
+    pub converged: bool,
+    /// Every start, in order.
+    pub starts: Vec<Start>,
+}
+
+/// Searches the space of `problem`. Starts run in parallel, each with its own streams.
+pub fn search(problem: &ForceProblem<'_>, options: &FitOptions) -> Fit {
+    let axes = problem.round_axes(&vec![0.5; problem.n_parameters()]);
+    let starts: Vec<Start> = (0..options.n_starts.max(1) as u64)
+        .into_par_iter()
+        .map(|start| {
+            let swarm_options = SwarmOptions {
+                n_particles: options.n_particles,
+                n_iterations: options.n_iterations,
+                seed: options.seed,
+                start,
+            };
+            let swarm = minimize(
+                problem.n_parameters(),
+                axes.as_ref(),
+                &swarm_options,
+                &mut |x| problem.mean_square(x),
+                &mut |_, _| ControlFlow::Continue(()),
+            );
+            let polished = options.polish.then(|| descend(problem, &swarm.best));
+            Start { swarm, polished }
+        })
+        .collect();
+    let mut best = 0;
+    for (index, start) in starts.iter().enumerate() {
+        if start.mean_square() < starts[best].mean_square() {
+            best = index;
+        }
+    }
+    let winner = &starts[best];
+    let (x, at_bound, converged) = match &winner.polished {
+        Some(polished) => (polished.x.clone(), polished.at_bound.clone(), polished.termination.converged()),
+        None => {
+            let wall = |value: &f64| *value <= 0.0 || *value >= 1.0;
+            (winner.swarm.best.clone(), winner.swarm.best.iter().map(wall).collect(), false)
+        }
+    };
+    Fit { x, at_bound, mean_square: winner.mean_square(), converged, starts }
+}

@@ -1,0 +1,479 @@
+//! All of it in order: from recordings to an artifact.
+
+use pam_core::artifact::model::{
+    Correlation, Domain, FitReport, IdentifyConfig, Loss, ModelArtifact, RecordingFit, SCHEMA, SearchReport,
+    StartReport, UnboundedFit,
+};
+use pam_core::artifact::{Input, Tool};
+use pam_core::direction::Thresholds;
+use pam_core::force::columns::{ForceColumns, N_COLUMNS};
+use pam_core::force::{BaseParameters, ForceModel, Form, Parameter};
+use pam_core::muscle::{Dimension, Muscle, MuscleFile};
+use pam_core::recording::Recording;
+
+use crate::condense::{Condensed, condense};
+use crate::error::IdentifyError;
+use crate::evaluate::{Evaluation, Trace, evaluate, trace};
+use crate::fit::{Fit, FitOptions, search};
+use crate::prepare::{Gated, Prepared, direct, gate, thresholds};
+use crate::problem::ForceProblem;
+use crate::search_space::{Free, SearchSpace};
+use crate::uncertainty::{Uncertainty, jackknife};
+use crate::{excitation, faults, geometry, report, robust, unbounded};
+
+/// What to fit to what.
+#[derive(Debug)]
+pub struct Request {
+    /// Recordings that parameters are fitted to.
+    pub estimation: Vec<Recording>,
+    /// Recordings that are held out.
+    pub validation: Vec<Recording>,
+    /// The muscle as measured.
+    pub muscle: MuscleFile,
+    /// How eq. 11 is written.
+    pub form: Form,
+    /// Size of the search.
+    pub options: FitOptions,
+    /// What a residual costs.
+    pub loss: Loss,
+    /// Parameters fitted on their own that are otherwise one share of a composite: `C₀₁`, `f_ss`.
+    pub free: Vec<Parameter>,
+    /// Parameters held at a value, in SI.
+    pub fix: Vec<(Parameter, f64)>,
+    /// `C₀₁ / C₁₀`.
+    pub bladder_ratio: f64,
+    /// Go on where an instrument fault is suspected.
+    pub accept_implausible: bool,
+    /// Show what the columns reach without bounds.
+    pub unbounded: bool,
+}
+
+/// What was found.
+#[derive(Debug)]
+pub struct Identified {
+    /// The muscle, fitted dimensions as fitted.
+    pub muscle: Muscle,
+    /// Eq. 11 with the values found.
+    pub model: ForceModel,
+    /// What was moved.
+    pub space: SearchSpace,
+    /// Dimensions that were moved, in the order of the coordinates behind those of `space`.
+    pub freed: Vec<Dimension>,
+    /// The search.
+    pub fit: Fit,
+    /// How well the result is known.
+    pub uncertainty: Uncertainty,
+    /// Parameters that the recordings cannot identify, held at their nominal values.
+    pub unidentifiable: Vec<Free>,
+    /// Thresholds of the direction.
+    pub thresholds: Thresholds,
+    /// Estimation recordings.
+    pub estimation: Vec<Prepared>,
+    /// Validation recordings.
+    pub validation: Vec<Prepared>,
+    /// Agreement on the estimation recordings.
+    pub estimation_fit: Evaluation,
+    /// Agreement on the validation recordings.
+    pub validation_fit: Evaluation,
+    /// Weights without bounds, where asked for.
+    pub unbounded: Option<UnboundedFit>,
+    /// White noise of the force, in N.
+    pub noise_floor_n: f64,
+    /// Lowest RMSE that the columns allow, in N.
+    pub column_floor_rmse_n: f64,
+    /// Cosines between the forces of `C₁₀` and `C₀₁`, and of the two frictions.
+    pub twin_cosines: [f64; 2],
+    /// What a person should know.
+    pub warnings: Vec<String>,
+}
+
+/// Looks at the recordings and for instrument faults; nothing is fitted.
+///
+/// # Errors
+/// [`IdentifyError`] names the recording and the remedy.
+pub fn check(request: Request) -> Result<Checked, IdentifyError> {
+    let n_estimation = request.estimation.len();
+    let Request { estimation, validation, .. } = request;
+    let gates = gate(estimation.into_iter().chain(validation).collect())?;
+    let strand_m = request.muscle.muscle.strand_length_m();
+    for gated in &gates {
+        let path = || gated.recording.path.clone();
+        if !gated.recording.samples.has_force() {
+            return Err(IdentifyError::NoForce { path: path() });
+        }
+        if !request.accept_implausible {
+            continue;
+        }
+        if let Some(length) = gated.quality.channel("length")
+            && length.highest >= strand_m
+        {
+            let (length_mm, strand_mm) = (length.highest * 1e3, strand_m * 1e3);
+            return Err(IdentifyError::LengthBeyondStrand { path: path(), length_mm, strand_mm });
+        }
+    }
+    if !request.accept_implausible {
+        let fault = faults::find(&gates, &request.muscle.muscle)
+            .map_err(|reason| IdentifyError::Samples { path: gates[0].recording.path.clone(), reason })?;
+        if let Some(fault) = fault {
+            return Err(IdentifyError::Fault(fault));
+        }
+    }
+    let pressures = || gates[..n_estimation].iter().filter_map(|gate| gate.quality.channel("pressure"));
+    let lowest_pa = pressures().map(|channel| channel.lowest).fold(f64::INFINITY, f64::min);
+    let highest_pa = pressures().map(|channel| channel.highest).fold(f64::NEG_INFINITY, f64::max);
+    let noise_pa = pressures().map(|channel| channel.noise).fold(0.0, f64::max);
+    if highest_pa - lowest_pa <= 12.0 * noise_pa {
+        return Err(IdentifyError::ConstantPressure {
+            path: gates[0].recording.path.clone(),
+            pressure_kpa: 0.5e-3 * (lowest_pa + highest_pa),
+        });
+    }
+    Ok(Checked {
+        gates,
+        n_estimation,
+        muscle: request.muscle,
+        form: request.form,
+        options: request.options,
+        loss: request.loss,
+        free: request.free,
+        fix: request.fix,
+        bladder_ratio: request.bladder_ratio,
+        unbounded: request.unbounded,
+    })
+}
+
+/// A request whose recordings have passed the gate.
+#[derive(Debug)]
+pub struct Checked {
+    gates: Vec<Gated>,
+    n_estimation: usize,
+    muscle: MuscleFile,
+    form: Form,
+    options: FitOptions,
+    loss: Loss,
+    free: Vec<Parameter>,
+    fix: Vec<(Parameter, f64)>,
+    bladder_ratio: f64,
+    unbounded: bool,
+}
+
+impl Checked {
+    /// Quality gate of every recording, estimation first.
+    pub fn gates(&self) -> &[Gated] {
+        &self.gates
+    }
+
+    /// Fits the model.
+    ///
+    /// # Errors
+    /// [`IdentifyError`] names the recording and the remedy.
+    pub fn identify(mut self) -> Result<Identified, IdentifyError> {
+        let validation = self.gates.split_off(self.n_estimation);
+        let thresholds = thresholds(&self.gates, &self.muscle.muscle);
+        let largest_n_per_m =
+            self.gates.iter().map(|gate| gate.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
+        let noise_floor_n = self.noise_floor_n();
+        let estimation = direct(std::mem::take(&mut self.gates), thresholds, self.form)?;
+        let validation = direct(validation, thresholds, self.form)?;
+
+        let columns = ForceColumns::new(&self.muscle.muscle, self.muscle.strand_modulus_pa, self.form, largest_n_per_m);
+        let condensed = condense(&estimation, &columns, 1, None)?;
+        let (space, unidentifiable) = self.search_space(&columns, &condensed, noise_floor_n);
+        if condensed.total.n_rows() <= 2 * N_COLUMNS as u64 {
+            return Err(IdentifyError::TooFewSamples {
+                path: estimation[0].recording.path.clone(),
+                n_samples: condensed.total.n_rows() as usize,
+                n_parameters: space.free.len(),
+            });
+        }
+        let column_floor_rmse_n =
+            (condensed.total.residual_floor_square_sum() / condensed.total.n_rows() as f64).sqrt();
+        let fit = search(
+            &ForceProblem { summary: &condensed.total, columns: &columns, space: &space, steps: &[] },
+            &self.options,
+        );
+        let found = self.settle(&estimation, columns.clone(), condensed.clone(), &space, fit, largest_n_per_m)?;
+        let problem = ForceProblem {
+            summary: &found.condensed.total,
+            columns: &found.columns,
+            space: &space,
+            steps: &found.steps,
+        };
+        let uncertainty = jackknife(&problem, &found.condensed, &found.fit.x, &found.fit.at_bound);
+        let model = self.model(&found.muscle, space.parameters(&found.fit.x[..space.free.len()]));
+        let estimation_fit = evaluate(&estimation, &model)?;
+        let validation_fit = evaluate(&validation, &model)?;
+        let unbounded = if self.unbounded { Some(unbounded_fit(&columns, &condensed, &validation)?) } else { None };
+        let lags = faults::lag::find(&estimation, &columns)
+            .map_err(|reason| IdentifyError::Samples { path: estimation[0].recording.path.clone(), reason })?;
+        let mut identified = Identified {
+            muscle: found.muscle,
+            model,
+            space,
+            freed: self.muscle.fit.clone(),
+            fit: found.fit,
+            uncertainty,
+            unidentifiable,
+            thresholds,
+            estimation,
+            validation,
+            estimation_fit,
+            validation_fit,
+            unbounded,
+            noise_floor_n,
+            column_floor_rmse_n,
+            twin_cosines: report::twin_cosines(&condensed.total),
+            warnings: Vec::new(),
+        };
+        identified.warnings = report::warnings(&identified, &lags, &self.muscle);
+        Ok(identified)
+    }
+
+    /// White noise of the force over all estimation recordings.
+    fn noise_floor_n(&self) -> f64 {
+        let (mut squares, mut rows) = (0.0, 0.0);
+        for gate in &self.gates {
+            if let Some(force) = gate.quality.channel("force") {
+                let n = gate.quality.n_rows as f64;
+                squares += n * force.noise * force.noise;
+                rows += n;
+            }
+        }
+        (squares / f64::max(rows, 1.0)).sqrt()
+    }
+
+    fn model(&self, muscle: &Muscle, parameters: BaseParameters) -> ForceModel {
+        ForceModel::new(muscle, self.muscle.strand_modulus_pa, self.form, parameters)
+    }
+
+    /// What is moved, and what the recordings cannot identify.
+    fn search_space(&self, columns: &ForceColumns, condensed: &Condensed, noise_n: f64) -> (SearchSpace, Vec<Free>) {
+        let modulus_pa = self.muscle.strand_modulus_pa;
+        let mut free = vec![Free::One(Parameter::K1), Free::One(Parameter::K2), Free::One(Parameter::K3)];
+        if self.free.contains(&Parameter::C01) || self.fixes(Parameter::C10) || self.fixes(Parameter::C01) {
+            free.extend([Free::One(Parameter::C10), Free::One(Parameter::C01)]);
+        } else {
+            free.push(Free::BladderSum);
+        }
+        free.extend([Free::One(Parameter::StrandCompliance), Free::One(Parameter::RubberFriction)]);
+        if self.free.contains(&Parameter::StrandFriction) {
+            free.push(Free::One(Parameter::StrandFriction));
+        }
+        // The square of the radius and k1 are one and the same in the gas term.
+        if self.muscle.fit.contains(&Dimension::RestRadius) {
+            free.retain(|free| *free != Free::One(Parameter::K1));
+        }
+        free.retain(|free| !matches!(free, Free::One(parameter) if self.fixes(*parameter)));
+        let mut held = BaseParameters { theta: [0.0; 8] };
+        for parameter in Parameter::ALL {
+            held.theta[parameter.index()] = Free::One(parameter).ranges(modulus_pa).nominal;
+        }
+        let sum_pa = Free::BladderSum.ranges(modulus_pa).nominal;
+        held.theta[Parameter::C10.index()] = sum_pa / (1.0 + self.bladder_ratio);
+        held.theta[Parameter::C01.index()] = sum_pa * self.bladder_ratio / (1.0 + self.bladder_ratio);
+        for &(parameter, value) in &self.fix {
+            held.theta[parameter.index()] = value;
+        }
+        let range = |free: &Free| {
+            let (low, high) = free.ranges(modulus_pa).search;
+            if *free == Free::One(Parameter::StrandCompliance) {
+                (low, high.min(columns.max_compliance_per_pa()))
+            } else {
+                (low, high)
+            }
+        };
+        let ranges = free.iter().map(range).collect();
+        let mut space = SearchSpace { free, ranges, held, bladder_ratio: self.bladder_ratio };
+        let center: Vec<f64> = (0..space.free.len()).map(|index| space.nominal_coordinate(index, modulus_pa)).collect();
+        let problem = ForceProblem { summary: &condensed.total, columns, space: &space, steps: &[] };
+        let floor_n = (condensed.total.residual_floor_square_sum() / condensed.total.n_rows().max(1) as f64).sqrt();
+        let hopeless = excitation::unidentifiable(&problem, &center, noise_n.max(floor_n).max(1e-6));
+        let mut unidentifiable = Vec::new();
+        for index in (0..hopeless.len()).rev().filter(|&index| hopeless[index]) {
+            unidentifiable.push(space.free.remove(index));
+            space.ranges.remove(index);
+        }
+        unidentifiable.reverse();
+        (space, unidentifiable)
+    }
+
+    fn fixes(&self, parameter: Parameter) -> bool {
+        self.fix.iter().any(|(fixed, _)| *fixed == parameter)
+    }
+
+    /// The slower ways, where asked for: freed dimensions, robust weights.
+    fn settle(
+        &self,
+        estimation: &[Prepared],
+        columns: ForceColumns,
+        condensed: Condensed,
+        space: &SearchSpace,
+        fit: Fit,
+        largest_n_per_m: f64,
+    ) -> Result<Settled, IdentifyError> {
+        let muscle = self.muscle.muscle.clone();
+        if !self.muscle.fit.is_empty() {
+            let setting = geometry::Setting {
+                recordings: estimation,
+                muscle: &self.muscle.muscle,
+                strand_modulus_pa: self.muscle.strand_modulus_pa,
+                form: self.form,
+                largest_n_per_m,
+                freed: &self.muscle.fit,
+                space,
+                seed: self.options.seed,
+            };
+            let freed = geometry::fit_freed(&setting, &fit.x)?;
+            let fit = Fit { x: freed.x, at_bound: freed.at_bound, converged: freed.converged && fit.converged, ..fit };
+            return Ok(Settled {
+                muscle: freed.muscle,
+                columns: freed.columns,
+                condensed: freed.condensed,
+                steps: freed.steps,
+                fit,
+            });
+        }
+        if self.loss == Loss::Huber {
+            let model_of = |x: &[f64]| self.model(&muscle, space.parameters(x));
+            let (fit, condensed) = robust::reweight(estimation, &columns, space, &model_of, fit)?;
+            return Ok(Settled { muscle, columns, condensed, steps: Vec::new(), fit });
+        }
+        Ok(Settled { muscle, columns, condensed, steps: Vec::new(), fit })
+    }
+
+    /// Options as an artifact states them.
+    pub fn config(&self) -> IdentifyConfig {
+        IdentifyConfig {
+            n_particles: self.options.n_particles,
+            n_iterations: self.options.n_iterations,
+            n_starts: self.options.n_starts,
+            polish: self.options.polish,
+            loss: self.loss,
+            freed: self
+                .free
+                .iter()
+                .map(|parameter| parameter.artifact_name().to_owned())
+                .chain(self.muscle.fit.iter().map(|dimension| dimension.parameter_name().to_owned()))
+                .collect(),
+            fixed: self
+                .fix
+                .iter()
+                .map(|&(parameter, value)| pam_core::artifact::model::FixedParameter {
+                    name: parameter.artifact_name().to_owned(),
+                    value: parameter.from_artifact(value),
+                })
+                .collect(),
+            bladder_ratio: self.bladder_ratio,
+        }
+    }
+}
+
+/// Where the search and what follows it ended.
+struct Settled {
+    muscle: Muscle,
+    columns: ForceColumns,
+    condensed: Condensed,
+    steps: Vec<(f64, f64)>,
+    fit: Fit,
+}
+
+fn unbounded_fit(
+    columns: &ForceColumns,
+    condensed: &Condensed,
+    validation: &[Prepared],
+) -> Result<UnboundedFit, IdentifyError> {
+    let weights = unbounded::best_weights(&condensed.total);
+    let rmse_n = |condensed: &Condensed| {
+        (condensed.total.residual_square_sum(&weights) / condensed.total.n_rows().max(1) as f64).sqrt()
+    };
+    let validation_rmse_n =
+        if validation.is_empty() { None } else { Some(rmse_n(&condense(validation, columns, 1, None)?)) };
+    Ok(UnboundedFit {
+        estimation_rmse_n: rmse_n(condensed),
+        validation_rmse_n,
+        implied: unbounded::implied(columns, &weights),
+    })
+}
+
+impl Identified {
+    /// Samples of every recording beside the model, estimation first.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Samples`] where samples cannot be read back.
+    pub fn traces(&self) -> Result<Vec<Trace>, IdentifyError> {
+        self.estimation.iter().chain(&self.validation).map(|prepared| trace(prepared, &self.model)).collect()
+    }
+
+    /// Best RMSE after each iteration of each swarm, in N.
+    pub fn convergence_n(&self) -> Vec<Vec<f64>> {
+        self.fit.starts.iter().map(|start| start.swarm.history.iter().map(|cost| cost.sqrt()).collect()).collect()
+    }
+
+    /// The artifact.
+    pub fn artifact(&self, tool: Tool, inputs: Vec<Input>, config: IdentifyConfig, seed: u64) -> ModelArtifact {
+        let prepared = || self.estimation.iter().chain(&self.validation);
+        let statistics = self.estimation_fit.each.iter().chain(&self.validation_fit.each);
+        let range = |name: &str| {
+            let channels = || self.estimation.iter().filter_map(|prepared| prepared.quality.channel(name));
+            [
+                channels().map(|channel| channel.lowest).fold(f64::INFINITY, f64::min),
+                channels().map(|channel| channel.highest).fold(f64::NEG_INFINITY, f64::max),
+            ]
+        };
+        let fastest = |rate: fn(&Prepared) -> f64| self.estimation.iter().map(rate).fold(0.0, f64::max);
+        ModelArtifact {
+            schema: SCHEMA.to_owned(),
+            tool,
+            inputs,
+            config,
+            seed,
+            geometry: self.muscle.clone(),
+            strand_modulus_pa: self.model.strand_modulus_pa(),
+            form: self.model.form(),
+            parameters: report::parameters(self),
+            composites: report::composites(self),
+            effects: Vec::new(),
+            correlation: Correlation {
+                names: report::coordinate_names(self),
+                matrix: self.uncertainty.correlation.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            },
+            fit: FitReport {
+                estimation: self.estimation_fit.each.first().map_or_else(
+                    || unreachable!("a fit has recordings"),
+                    |first| self.estimation_fit.together.unwrap_or(*first),
+                ),
+                validation: self.validation_fit.together,
+                recordings: prepared()
+                    .zip(statistics)
+                    .map(|(prepared, &statistics)| RecordingFit { path: prepared.recording.path.clone(), statistics })
+                    .collect(),
+                noise_floor_n: self.noise_floor_n,
+                effective_samples: self.uncertainty.effective_samples,
+            },
+            domain: Domain {
+                pressure_pa: range("pressure"),
+                length_m: range("length"),
+                force_n: range("force"),
+                length_rate_m_per_s: fastest(|prepared| prepared.quality.length_rate_m_per_s),
+                pressure_rate_pa_per_s: fastest(|prepared| prepared.quality.pressure_rate_pa_per_s),
+            },
+            direction: self.thresholds,
+            quality: prepared().map(|prepared| prepared.quality.clone()).collect(),
+            search: SearchReport {
+                starts: self
+                    .fit
+                    .starts
+                    .iter()
+                    .map(|start| StartReport {
+                        swarm_rmse_n: start.swarm.best_cost.sqrt(),
+                        polished_rmse_n: start.polished.as_ref().map(|polished| (2.0 * polished.cost).sqrt()),
+                    })
+                    .collect(),
+                converged: self.fit.converged,
+                column_floor_rmse_n: self.column_floor_rmse_n,
+            },
+            unbounded: self.unbounded.clone(),
+            warnings: self.warnings.clone(),
+        }
+    }
+}

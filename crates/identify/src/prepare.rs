@@ -1,0 +1,80 @@
+//! Recordings made ready for a fit: quality gate and direction of motion beside each.
+
+use pam_core::direction::{Direction, Driver, Thresholds};
+use pam_core::force::Form;
+use pam_core::muscle::Muscle;
+use pam_core::quality::RecordingQuality;
+use pam_core::recording::Recording;
+use rayon::prelude::*;
+
+use crate::error::IdentifyError;
+
+/// A recording with its quality gate, before a direction is known.
+#[derive(Debug)]
+pub struct Gated {
+    /// The recording.
+    pub recording: Recording,
+    /// What it looks like.
+    pub quality: RecordingQuality,
+}
+
+/// A recording ready for a fit.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The recording.
+    pub recording: Recording,
+    /// What it looks like.
+    pub quality: RecordingQuality,
+    /// Direction of motion of every row.
+    pub direction: Direction,
+}
+
+/// Looks at every recording, in parallel.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn gate(recordings: Vec<Recording>) -> Result<Vec<Gated>, IdentifyError> {
+    recordings
+        .into_par_iter()
+        .map(|recording| match RecordingQuality::of(&recording) {
+            Ok(quality) => Ok(Gated { recording, quality }),
+            Err(reason) => Err(IdentifyError::Samples { path: recording.path, reason }),
+        })
+        .collect()
+}
+
+/// Thresholds of the direction that fit all of `gates`: five times the worst noise, and never less than
+/// 1e-4 of the rest length or 1e-3 of the highest pressure, below which a flip means nothing.
+pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
+    let worst = |name: &str| {
+        gates
+            .iter()
+            .filter_map(|gate| gate.quality.channel(name))
+            .map(|channel| channel.play_threshold())
+            .fold(0.0, f64::max)
+    };
+    let highest_pa = gates
+        .iter()
+        .filter_map(|gate| gate.quality.channel("pressure"))
+        .map(|channel| channel.highest)
+        .fold(0.0, f64::max);
+    Thresholds {
+        length_m: worst("length").max(1e-4 * muscle.rest_length_m),
+        pressure_pa: worst("pressure").max(1e-3 * highest_pa),
+    }
+}
+
+/// Finds the direction of motion of every recording, in parallel.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn direct(gates: Vec<Gated>, thresholds: Thresholds, form: Form) -> Result<Vec<Prepared>, IdentifyError> {
+    let driver = if form == Form::AsPrinted { Driver::Pressure } else { Driver::Motion };
+    gates
+        .into_par_iter()
+        .map(|Gated { recording, quality }| match Direction::of(&recording, thresholds, driver) {
+            Ok(direction) => Ok(Prepared { recording, quality, direction }),
+            Err(reason) => Err(IdentifyError::Samples { path: recording.path, reason }),
+        })
+        .collect()
+}

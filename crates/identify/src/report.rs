@@ -1,0 +1,266 @@
+//! What was found, in the words and numbers of an artifact.
+
+use pam_core::artifact::model::{CompositeEntry, ParameterEntry, ParameterStatus};
+use pam_core::force::Parameter;
+use pam_core::force::columns::{BLADDER, FRICTION};
+use pam_core::muscle::{Dimension, MuscleFile};
+use pam_optim::summary::Summary;
+
+use crate::faults::lag::Lag;
+use crate::identify::Identified;
+use crate::search_space::Free;
+
+/// Correlation beyond which two estimates are said to be one.
+const TWINS: f64 = 0.98;
+
+/// Cosines between the forces of `C₁₀` and `C₀₁`, and of the two frictions, over the recordings.
+pub fn twin_cosines(summary: &Summary) -> [f64; 2] {
+    let cosine = |left: usize, right: usize| {
+        let (mut cross, mut squares_left, mut squares_right) = (0.0, 0.0, 0.0);
+        for row in 0..summary.n_columns() {
+            let entries = summary.row(row);
+            cross += entries[left] * entries[right];
+            squares_left += entries[left] * entries[left];
+            squares_right += entries[right] * entries[right];
+        }
+        let scale = (squares_left * squares_right).sqrt();
+        if scale > 0.0 { cross / scale } else { 1.0 }
+    };
+    [cosine(BLADDER, BLADDER + 1), cosine(FRICTION, FRICTION + 1)]
+}
+
+/// Names of what was fitted, in the order of the coordinates.
+pub fn coordinate_names(found: &Identified) -> Vec<String> {
+    let dimensions = found.freed.iter().map(|dimension| dimension.parameter_name());
+    found.space.free.iter().map(|free| free.name()).chain(dimensions).map(str::to_owned).collect()
+}
+
+/// Value, standard error (SI of `theta`) and whether it is at its bound, of a free parameter.
+fn coordinate(found: &Identified, index: usize) -> (f64, Option<f64>, bool) {
+    let (low, high) = found.space.ranges[index];
+    let value = low + found.fit.x[index] * (high - low);
+    let stderr = found.uncertainty.stderr[index].map(|stderr| stderr * (high - low));
+    (value, stderr, found.fit.at_bound[index])
+}
+
+/// The eight parameters of eq. 11, and fitted dimensions after them.
+pub fn parameters(found: &Identified) -> Vec<ParameterEntry> {
+    let position = |free: Free| found.space.free.iter().position(|candidate| *candidate == free);
+    let ratio = found.space.bladder_ratio;
+    let mut entries: Vec<ParameterEntry> = Parameter::ALL
+        .into_iter()
+        .map(|parameter| {
+            let value = found.model.parameters().of(parameter);
+            let share = match parameter {
+                Parameter::C10 => 1.0 / (1.0 + ratio),
+                Parameter::C01 => ratio / (1.0 + ratio),
+                _ => 0.0,
+            };
+            let (stderr, status) = if let Some(index) = position(Free::One(parameter)) {
+                let (_, stderr, at_bound) = coordinate(found, index);
+                let status = if at_bound {
+                    ParameterStatus::AtBound
+                } else if parameter == Parameter::RubberFriction
+                    && position(Free::One(Parameter::StrandFriction)).is_none()
+                {
+                    ParameterStatus::Composite
+                } else {
+                    ParameterStatus::Fitted
+                };
+                (stderr, status)
+            } else if let Some(index) = position(Free::BladderSum).filter(|_| share > 0.0) {
+                let (_, stderr, at_bound) = coordinate(found, index);
+                let status = if at_bound { ParameterStatus::AtBound } else { ParameterStatus::Composite };
+                (stderr.map(|stderr| share * stderr), status)
+            } else {
+                (None, ParameterStatus::Fixed)
+            };
+            let written = parameter.from_artifact(value);
+            // The modulus is the inverse of what was fitted: δE = E² δ(1/E).
+            let stderr =
+                stderr.map(
+                    |stderr| if parameter == Parameter::StrandCompliance { stderr * written * written } else { stderr },
+                );
+            ParameterEntry {
+                name: parameter.artifact_name().to_owned(),
+                value: written,
+                unit: parameter.unit().to_owned(),
+                stderr,
+                status,
+            }
+        })
+        .collect();
+    let n_free = found.space.free.len();
+    for (index, &dimension) in found.freed.iter().enumerate() {
+        let (low, high) = dimension.fit_range(&found.muscle);
+        entries.push(ParameterEntry {
+            name: dimension.parameter_name().to_owned(),
+            value: dimension.of(&found.muscle),
+            unit: dimension.unit().to_owned(),
+            stderr: found.uncertainty.stderr[n_free + index].map(|stderr| stderr * (high - low)),
+            status: if found.fit.at_bound[n_free + index] { ParameterStatus::AtBound } else { ParameterStatus::Fitted },
+        });
+    }
+    entries
+}
+
+/// Combinations that the data determine where the members cannot be told apart.
+pub fn composites(found: &Identified) -> Vec<CompositeEntry> {
+    let mut entries = Vec::new();
+    for (index, free) in found.space.free.iter().enumerate() {
+        let (value, stderr, _) = coordinate(found, index);
+        match free {
+            Free::BladderSum => entries.push(CompositeEntry {
+                name: "c10 + c01".to_owned(),
+                value,
+                unit: "Pa".to_owned(),
+                stderr,
+                reason: format!(
+                    "the two act almost alike (cosine {:.3} between their forces in these recordings); the sum is \
+                     fitted and shared at c01/c10 = {:.3}",
+                    found.twin_cosines[0], found.space.bladder_ratio
+                ),
+            }),
+            Free::One(Parameter::RubberFriction)
+                if !found.space.free.contains(&Free::One(Parameter::StrandFriction)) =>
+            {
+                entries.push(CompositeEntry {
+                    name: "rubber_friction (strand_friction in it)".to_owned(),
+                    value,
+                    unit: "1".to_owned(),
+                    stderr,
+                    reason: format!(
+                        "friction on the bladder and between strands act almost alike (cosine {:.3} in these \
+                         recordings); the first is fitted and stands for both",
+                        found.twin_cosines[1]
+                    ),
+                });
+            }
+            Free::One(Parameter::K1) => {
+                let radius_m = found.muscle.rest_radius_m;
+                entries.push(CompositeEntry {
+                    name: "k1 rest_radius^2".to_owned(),
+                    value: value * radius_m * radius_m,
+                    unit: "m^2".to_owned(),
+                    stderr: stderr.map(|stderr| stderr * radius_m * radius_m),
+                    reason: "the gas term holds k1 and the radius as this product alone; the radius is taken from \
+                             the muscle file"
+                        .to_owned(),
+                });
+            }
+            Free::One(_) => {}
+        }
+    }
+    entries
+}
+
+/// What a person should know before using the model.
+pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for prepared in found.estimation.iter().chain(&found.validation) {
+        for channel in &prepared.quality.channels {
+            for (share, end, value) in [
+                (channel.clipped_low_share, "low", channel.lowest),
+                (channel.clipped_high_share, "high", channel.highest),
+            ] {
+                if share > 0.005 {
+                    warnings.push(format!(
+                        "{}: {} is stuck at its {end} end ({value:.4} {}) in {:.1} % of the samples: the sensor or its \
+                         converter is out of range there",
+                        prepared.recording.path,
+                        channel.name,
+                        channel.unit,
+                        100.0 * share
+                    ));
+                }
+            }
+        }
+    }
+    for lag in lags {
+        let (milliseconds, order) =
+            (1e3 * lag.force_later_s.abs(), if lag.force_later_s > 0.0 { "later than" } else { "ahead of" });
+        warnings.push(format!(
+            "force comes {milliseconds:.0} ms {order} {}: with that shift {:.2} N stay unexplained in the fastest \
+             stretches instead of {:.2} N; a sensor's filter, a tube or a clock does this",
+            lag.channel, lag.rmse_n.1, lag.rmse_n.0
+        ));
+    }
+    for free in &found.unidentifiable {
+        warnings.push(format!(
+            "{}: these recordings cannot identify it, and it is held at its nominal value; {}",
+            free.name(),
+            remedy(*free)
+        ));
+    }
+    for (index, free) in found.space.free.iter().enumerate() {
+        let (value, _, at_bound) = coordinate(found, index);
+        let (low, high) = free.ranges(muscle.strand_modulus_pa).plausible;
+        let above = value > high;
+        if at_bound {
+            let end = if found.fit.x[index] > 0.5 { "upper" } else { "lower" };
+            warnings.push(format!(
+                "{} is at the {end} end of its range ({}): eq. 11 lacks something that it stands in for, or {}",
+                free.name(),
+                written(*free, value),
+                free.likely_cause(found.fit.x[index] > 0.5)
+            ));
+        } else if value < low || above {
+            warnings.push(format!(
+                "{} = {} is {} what braided muscles have ({} to {}); a likely cause is {}",
+                free.name(),
+                written(*free, value),
+                beside(*free, above),
+                written(*free, if *free == Free::One(Parameter::StrandCompliance) { high } else { low }),
+                written(*free, if *free == Free::One(Parameter::StrandCompliance) { low } else { high }),
+                free.likely_cause(above)
+            ));
+        }
+    }
+    let names = coordinate_names(found);
+    let correlation = &found.uncertainty.correlation;
+    for row in 0..names.len() {
+        for column in row + 1..names.len() {
+            if correlation[(row, column)].abs() > TWINS {
+                warnings.push(format!(
+                    "{} and {} cannot be told apart in these recordings (correlation {:.3}): trust neither alone",
+                    names[row],
+                    names[column],
+                    correlation[(row, column)]
+                ));
+            }
+        }
+    }
+    if found.freed.contains(&Dimension::RestRadius) {
+        warnings.push("rest_radius is fitted, so k1 is held: the gas term holds their product alone".to_owned());
+    }
+    warnings
+}
+
+/// "above" or "below" as a reader of the artifact sees it: the modulus is the inverse of what is fitted.
+fn beside(free: Free, above: bool) -> &'static str {
+    if above == (free == Free::One(Parameter::StrandCompliance)) { "below" } else { "above" }
+}
+
+/// A value as a person reads it.
+fn written(free: Free, value: f64) -> String {
+    match free {
+        Free::One(Parameter::StrandCompliance) => format!("{:.3} GPa", 1e-9 / value),
+        Free::One(Parameter::C10 | Parameter::C01) | Free::BladderSum => format!("{:.1} kPa", value * 1e-3),
+        Free::One(Parameter::K3) => format!("{value:.2} N"),
+        Free::One(Parameter::RubberFriction) => format!("{value:.3e}"),
+        Free::One(_) => format!("{value:.3}"),
+    }
+}
+
+/// What to record so that a parameter can be identified.
+fn remedy(free: Free) -> &'static str {
+    match free {
+        Free::One(Parameter::K1 | Parameter::StrandCompliance) => "record several pressures at one length",
+        Free::One(Parameter::K2) => "record several lengths at one pressure",
+        Free::One(Parameter::K3) => "record the vented muscle as well",
+        Free::One(Parameter::C10 | Parameter::C01) | Free::BladderSum => "record several lengths at low pressure",
+        Free::One(Parameter::RubberFriction | Parameter::StrandFriction) => {
+            "record motion both ways at several pressures"
+        }
+    }
+}
