@@ -105,9 +105,8 @@ mod tests {
 
     #[test]
     fn a_terminal_table_is_light_and_aligned() {
-        let expected = "\
- parameter                 value   status
-───────────────────────────────────────────
+        let expected = " parameter                 value   status
+────────────────────────────────────────────
  gas_gain          1.052 ± 0.004   fitted
  friction|rubber     −12.5 ± 0.3   at_bound
  tare                          –

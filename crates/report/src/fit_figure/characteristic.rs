@@ -79,7 +79,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, (letter, abscissa): (&st
     };
     let force =
         extent(moving.iter().flat_map(forces).chain(means.iter().flat_map(|mean| [mean.force_n, mean.model_n])));
-    let labels = labels(abscissa, &moving, recordings, &means, &levels);
+    let labels = labels(abscissa, &moving, recordings, &means, &levels, along);
     let right = if labels.is_empty() { 20.0 } else { 74.0 };
     let force_axis = Axis::linear("force (N)", force.0.min(0.0), force.1, 6);
     let panel = Panel::new(cell, abscissa.axis(along.0, along.1), force_axis, right);
@@ -156,7 +156,7 @@ fn draw_moving(canvas: &mut Canvas<'_>, panel: &Panel, abscissa: Abscissa, movin
                 if modelled {
                     panel.line(canvas, values, color.toward(palette::INK, 0.25), 1.5);
                 } else {
-                    panel.line(canvas, values, color.faded(0.3), 3.0);
+                    panel.line(canvas, values, color.faded(0.3), 2.5);
                 }
             }
         }
@@ -190,10 +190,10 @@ fn draw_means(canvas: &mut Canvas<'_>, panel: &Panel, means: &[Mean]) {
         for mean in means.iter().filter(|mean| mean.level == level && mean.contracting == contracting) {
             let center = panel.at(mean.at, mean.force_n);
             if mean.role == Role::Estimation {
-                canvas.dot(center, 4.0, color(contracting).faded(0.75));
+                canvas.dot(center, 3.5, color(contracting).faded(0.75));
             } else {
-                canvas.dot(center, 4.0, palette::WHITE.faded(0.8));
-                canvas.ring(center, 4.0, color(contracting), 1.6);
+                // Wide enough that a dot at the same place shows inside.
+                canvas.ring(center, 4.75, color(contracting), 1.5);
             }
         }
     }
@@ -238,7 +238,10 @@ fn labels(
     recordings: &[Clean],
     means: &[Mean],
     levels: &[f64],
+    (lowest, highest): (f64, f64),
 ) -> Vec<(f64, String, Color)> {
+    // The label of a curve that ends far from the edge would seem to belong to another.
+    let reaches_edge = |at: f64| at >= highest - 0.2 * (highest - lowest);
     // Text, sum of heights, how many.
     let mut labels: Vec<(String, f64, f64)> = Vec::new();
     let mut add = |text: String, height: f64| match labels.iter_mut().find(|label| label.0 == text) {
@@ -246,7 +249,9 @@ fn labels(
         None => labels.push((text, height, 1.0)),
     };
     for curve in curves(means, 0.0) {
-        if let Some((_, force_n)) = curve.points.last() {
+        if let Some((at, force_n)) = curve.points.last()
+            && reaches_edge(*at)
+        {
             add(abscissa.level_text(levels[curve.level]), *force_n);
         }
     }
@@ -256,6 +261,9 @@ fn labels(
         }
         let along = abscissa.along(recording);
         let end = quantile(along, 0.97);
+        if !reaches_edge(end) {
+            continue;
+        }
         let at_end: Vec<f64> =
             along.iter().zip(&recording.model_n).filter(|(x, _)| **x >= end).map(|(_, force)| *force).collect();
         add(abscissa.level_text(mean(abscissa.across(recording))), mean(&at_end));
@@ -282,7 +290,8 @@ fn draw_legend(
         keys.push(Key::new("measured", Mark::Line(4.0), palette::GRAY.faded(0.4)));
     }
     if !means.is_empty() {
-        keys.push(Key::new("measured", Mark::Dot, palette::GRAY));
+        let text = if moving.is_empty() { "measured" } else { "mean" };
+        keys.push(Key::new(text, Mark::Dot, palette::GRAY));
     }
     if means.iter().any(|mean| mean.role == Role::Validation) {
         keys.push(Key::new("validation", Mark::Ring, palette::GRAY));

@@ -44,6 +44,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, starts: &[SwarmStart], n
         }
     }
     if best.is_finite() {
+        keys.push(Key::new("best", Mark::Line(2.2), palette::BLUE));
         panel.level(canvas, best, palette::INK, 1.2);
         labels.push((best, format!("{} N", significant(best, 4)), palette::INK));
         let agree = polished.iter().filter(|rmse_n| **rmse_n <= best * 1.001).count();
@@ -57,7 +58,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, starts: &[SwarmStart], n
         keys.push(Key::new("noise", Mark::Dashes(1.6), palette::ORANGE));
     }
     panel.label_right(canvas, &labels);
-    legend(canvas, &keys, panel.frame.right, y + 17.0);
+    legend(canvas, &keys, cell.right - 12.0, y + 17.0);
 }
 
 fn is_positive(value: &f64) -> bool {

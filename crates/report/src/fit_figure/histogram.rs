@@ -10,7 +10,7 @@ const BINS: usize = 60;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], noise_n: Option<f64>) {
     let limit = limit(recordings, noise_n);
-    let x = Axis::linear("residual (N)", -limit, limit, 5);
+    let x = Axis::linear("residual (N)", -limit, limit, 8);
     let density = |role: Role| density(recordings, role, &x);
     let (estimation, validation) = (density(Role::Estimation), density(Role::Validation));
     let tallest = extent(estimation.iter().chain(&validation).copied()).1;
@@ -33,13 +33,9 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], no
         panel.line(canvas, steps, VALIDATION, 1.8);
     }
     if let Some(noise_n) = noise_n {
-        let points = (0..=240).map(|step| {
-            let residual_n = panel.x.from + (panel.x.to - panel.x.from) * f64::from(step) / 240.0;
-            (residual_n, gauss(residual_n, noise_n).min(panel.y.to))
-        });
-        panel.line(canvas, points, palette::ORANGE.toward(palette::INK, 0.1), 2.0);
+        draw_noise(canvas, &panel, noise_n);
     }
-    panel.draw_x_axis(canvas);
+    panel.line(canvas, [(panel.x.from, 0.0), (panel.x.to, 0.0)], palette::SILVER, 1.0);
     let all = || recordings.iter().flat_map(|recording| recording.residual_n.iter());
     let beyond = all().filter(|residual_n| !(panel.x.from..=panel.x.to).contains(*residual_n)).count();
     if beyond > 0 {
@@ -85,6 +81,19 @@ fn density(recordings: &[Clean], role: Role, x: &Axis) -> Vec<f64> {
     }
     let width = (x.to - x.from) / BINS as f64;
     counts.into_iter().map(|count| if total > 0.0 { count / (total * width) } else { 0.0 }).collect()
+}
+
+/// The noise's bell; where it is taller than the panel, its two flanks.
+fn draw_noise(canvas: &mut Canvas<'_>, panel: &Panel, noise_n: f64) {
+    let color = palette::ORANGE.toward(palette::INK, 0.1);
+    let peak = gauss(0.0, noise_n);
+    let clear = if peak > panel.y.to { noise_n * (2.0 * (peak / panel.y.to).ln()).sqrt() } else { 0.0 };
+    let end = (5.0 * noise_n).min(panel.x.to);
+    for side in [-1.0, 1.0] {
+        let flank = (0..=100).map(|step| clear + (end - clear) * f64::from(step) / 100.0);
+        let flank = flank.map(|size_n| (side * size_n, gauss(size_n, noise_n).min(panel.y.to)));
+        panel.line(canvas, flank, color, 2.0);
+    }
 }
 
 fn gauss(value: f64, deviation: f64) -> f64 {

@@ -127,5 +127,5 @@ fn headline(canvas: &mut Canvas<'_>, page: Rect, figure: &FitFigure) {
         .into_iter()
         .filter_map(|(name, value)| Some(format!("{name} {} N", significant(value.filter(|v| v.is_finite())?, 3))))
         .collect();
-    canvas.text(&parts.join("  ·  "), (page.left + 14.0, 50.0), Anchor::Start, 13.5, palette::GRAY);
+    canvas.text(&parts.join("\u{2003}·\u{2003}"), (page.left + 14.0, 50.0), Anchor::Start, 13.5, palette::GRAY);
 }

@@ -1,18 +1,21 @@
 //! Panel c: residual over time, one recording after the other.
 
-use super::clean::{Clean, extent, quantile};
+use super::clean::{Clean, extent, mean, quantile};
 use super::{ESTIMATION, Role, VALIDATION};
+use crate::number::significant;
 use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, legend, palette, text_width, thin, title};
 
 /// Size of the recordings' names, in pixels.
 const NAME_SIZE: f64 = 11.0;
+/// Least gap between two names.
+const GAP: f64 = 10.0;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], noise_n: Option<f64>) {
     let slots = slots(recordings);
     let end_s = slots.last().map_or(1.0, |slot| slot.1);
     let (residual, cut) = limits(recordings, noise_n);
     let panel = Panel {
-        frame: cell.inset(64.0, 52.0, 20.0, 46.0),
+        frame: cell.inset(64.0, 64.0, 20.0, 46.0),
         x: Axis::exact("time, recordings one after the other (s)", 0.0, end_s, 12),
         y: Axis::linear("residual (N)", residual.0, residual.1, 5),
     };
@@ -90,21 +93,40 @@ fn limits(recordings: &[Clean], noise_n: Option<f64>) -> ((f64, f64), bool) {
     ((from.min(-band), to.max(band)), cut)
 }
 
-/// Boundaries and, above the frame, as much of the names as there is room for.
+/// Boundaries and, above the frame, the names: in one row, or in two in turn where that is too narrow, with the
+/// RMSE where there is room left.
 fn draw_names(canvas: &mut Canvas<'_>, panel: &Panel, recordings: &[Clean], slots: &[(f64, f64)]) {
-    let narrowest =
-        slots.iter().map(|(from, to)| panel.at(*to, 0.0).0 - panel.at(*from, 0.0).0).fold(f64::INFINITY, f64::min);
+    let edges: Vec<(f64, f64)> =
+        slots.iter().map(|(from, to)| (panel.at(*from, 0.0).0, panel.at(*to, 0.0).0)).collect();
     let full: Vec<&str> = recordings.iter().map(|recording| recording.name.as_str()).collect();
-    let fits = |names: &[&str]| names.iter().all(|name| text_width(name, NAME_SIZE) <= narrowest - 8.0);
-    let names = if fits(&full) { full } else { distinctive(&full) };
-    for (index, (name, (from, to))) in names.iter().zip(slots).enumerate() {
-        let (left, right) = (panel.at(*from, 0.0).0, panel.at(*to, 0.0).0);
+    let fits = |names: &[&str], width: &dyn Fn(usize) -> f64| {
+        names.iter().enumerate().all(|(index, name)| text_width(name, NAME_SIZE) <= width(index))
+    };
+    let own = |index: usize| edges[index].1 - edges[index].0 - GAP;
+    // Up to where the next name in the same row begins.
+    let shared = |index: usize| edges.get(index + 1).map_or(own(index) + GAP, |next| next.1 - edges[index].0 - GAP);
+    let names = if fits(&full, &own) { full } else { distinctive(&full) };
+    let two_rows = !fits(&names, &own);
+    for (index, (name, recording)) in names.iter().zip(recordings).enumerate() {
+        let raised = two_rows && index % 2 == 0;
+        let (left, top) = (edges[index].0, panel.frame.top);
         if index > 0 {
-            canvas.line([(left, panel.frame.top - 14.0), (left, panel.frame.bottom)], palette::SILVER, 1.0);
+            let rise = if raised { 27.0 } else { 14.0 };
+            canvas.line([(left, top - rise), (left, panel.frame.bottom)], palette::SILVER, 0.75);
         }
-        let text = shortened(name, right - left - 8.0);
-        canvas.text(&text, (left + 5.0, panel.frame.top - 8.0), Anchor::Start, NAME_SIZE, palette::GRAY);
+        let width = if two_rows { shared(index) } else { own(index) };
+        let with_rmse = format!("{name}, RMSE {} N", significant(rmse_n(recording), 3));
+        let text = if text_width(&with_rmse, NAME_SIZE) <= width { with_rmse } else { shortened(name, width) };
+        let color =
+            if recording.role == Role::Estimation { palette::GRAY } else { VALIDATION.toward(palette::INK, 0.3) };
+        let y = top - if raised { 21.0 } else { 8.0 };
+        canvas.text(&text, (left + 4.0, y), Anchor::Start, NAME_SIZE, color);
     }
+}
+
+fn rmse_n(recording: &Clean) -> f64 {
+    let squares: Vec<f64> = recording.residual_n.iter().map(|residual_n| residual_n * residual_n).collect();
+    mean(&squares).sqrt()
 }
 
 /// Names without what all of them begin and end with, cut at word boundaries.
@@ -140,20 +162,22 @@ fn distinctive<'a>(names: &[&'a str]) -> Vec<&'a str> {
     tails.iter().map(|name| &name[..name.len() - end]).collect()
 }
 
-/// As much of `name` as fits into `width` pixels.
+/// As much of the beginning and of the end of `name` as fits into `width` pixels.
 fn shortened(name: &str, width: f64) -> String {
     if text_width(name, NAME_SIZE) <= width {
         return name.to_owned();
     }
-    let mut kept = String::new();
-    for character in name.chars() {
-        kept.push(character);
-        if text_width(&kept, NAME_SIZE) + text_width("…", NAME_SIZE) > width {
-            kept.pop();
+    let characters: Vec<char> = name.chars().collect();
+    let mut shorter = String::new();
+    for kept in 2..characters.len() {
+        let (head, tail) = (&characters[..kept.div_ceil(2)], &characters[characters.len() - kept / 2..]);
+        let text: String = head.iter().chain(&['…']).chain(tail).collect();
+        if text_width(&text, NAME_SIZE) > width {
             break;
         }
+        shorter = text;
     }
-    if kept.chars().count() < 2 { String::new() } else { kept + "…" }
+    shorter
 }
 
 #[cfg(test)]
@@ -173,7 +197,7 @@ mod tests {
     #[test]
     fn a_name_is_cut_to_its_room() {
         assert_eq!(shortened("short", 100.0), "short");
-        assert!(shortened("a name far too long", 60.0).ends_with('…'));
+        assert_eq!(shortened("a name far too long", 60.0), "a na…long");
         assert_eq!(shortened("name", 5.0), "");
     }
 }

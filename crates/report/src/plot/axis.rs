@@ -22,8 +22,8 @@ impl Axis {
     pub fn linear(title: impl Into<String>, lowest: f64, highest: f64, ticks: usize) -> Self {
         let (lowest, highest) = widened(lowest, highest);
         let step = round_step((highest - lowest) / ticks.max(1) as f64);
-        // Half a step is round enough for an end and leaves less of the panel empty than a whole one.
-        let end = 0.5 * step;
+        // A fifth of a step is round enough for an end and leaves less of the panel empty than a whole one.
+        let end = 0.2 * step;
         let from = (lowest / end + 1e-9).floor() * end;
         let to = (highest / end - 1e-9).ceil() * end;
         Self { title: title.into(), from, to, ticks: linear_ticks(from, to, step), logarithmic: false }
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn limits_and_ticks_are_round() {
         let axis = Axis::linear("force (N)", -8.7, 212.0, 6);
-        assert_eq!((axis.from, axis.to), (-25.0, 225.0));
+        assert_eq!((axis.from, axis.to), (-10.0, 220.0));
         assert_eq!(labels(&axis), ["0", "50", "100", "150", "200"]);
         let axis = Axis::linear("x", 0.12, 0.19, 5);
         assert_eq!(labels(&axis), ["0.12", "0.14", "0.16", "0.18"]);

@@ -55,7 +55,7 @@ pub fn legend(canvas: &mut Canvas<'_>, keys: &[Key], right: f64, y: f64) -> f64 
             Mark::Line(width) => canvas.line([from, to], key.color, width),
             Mark::Dashes(width) => canvas.dashes(from, to, key.color, width, 3.2),
             Mark::Dot => canvas.dot(middle, 3.5, key.color),
-            Mark::Ring => canvas.ring(middle, 3.5, key.color, 1.4),
+            Mark::Ring => canvas.ring(middle, 4.5, key.color, 1.5),
             Mark::Patch => {
                 let patch = crate::plot::Rect { left: from.0 + 2.0, top: y - 5.0, right: to.0, bottom: y + 5.0 };
                 canvas.rect(patch, key.color);
