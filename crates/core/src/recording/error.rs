@@ -16,7 +16,7 @@ pub struct ReadError {
     /// Where in the file, unless it concerns the whole.
     pub place: Option<Place>,
     /// What is wrong there.
-    pub kind: ReadErrorKind,
+    pub kind: Box<ReadErrorKind>,
 }
 
 /// A place in a file.

@@ -59,7 +59,7 @@ impl Default for ReadOptions {
 /// # Errors
 /// [`ReadError`] says where and why the file is refused, and what to do.
 pub fn read_recording(source: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
-    read(source, options).map_err(|(place, kind)| ReadError { path: source.to_owned(), place, kind })
+    read(source, options).map_err(|(place, kind)| ReadError { path: source.to_owned(), place, kind: Box::new(kind) })
 }
 
 /// A reason and, unless it concerns the whole file, its place.

@@ -67,6 +67,9 @@ impl RowParser {
         let separator = self.separator;
         let mut slots = [0.0; MAX_COLUMNS];
         let mut rest = text;
+        while let [b' ', tail @ ..] = rest {
+            rest = tail;
+        }
         if rest.first() == Some(&b'#') {
             return None;
         }
@@ -156,7 +159,7 @@ impl RowParser {
         let channels = self.channels(&slots);
         for (value, source) in channels.iter().zip(&self.plan.sources) {
             if let Some(Source::Field { slot, .. }) = source
-                && !(value.abs() <= LARGEST)
+                && (value.is_nan() || value.abs() > LARGEST)
                 && let Some(index) = self.plan.fields.iter().position(|field| *field == Some(*slot))
             {
                 let (column, text) = self.shown(index, &line[self.fields[index].clone()]);

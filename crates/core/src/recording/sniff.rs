@@ -73,19 +73,17 @@ pub(crate) fn layout(start: &[u8], n_columns: Option<usize>) -> Layout {
         .filter(|line| !is_blank(line) && !is_comment(line))
         .take(SAMPLE_ROWS)
         .collect();
-    let mut best: Option<((bool, bool, usize, usize, usize), Layout)> = None;
-    for separator in SEPARATORS {
+    let ranked = SEPARATORS.map(|separator| {
         let counts: Vec<usize> = rows.iter().map(|row| count(row, separator)).collect();
         let n_fields = commonest(&counts);
         let n_first = counts.first().copied().unwrap_or(1);
         let alike = counts.iter().filter(|count| **count == n_first).count();
-        let expected = n_columns.is_some_and(|n_columns| n_fields == n_columns);
+        let expected = n_columns == Some(n_fields);
         let rank = (expected, n_first > 1, alike, numeric_share(&rows, separator), n_first);
-        if best.as_ref().is_none_or(|(best, _)| rank > *best) {
-            best = Some((rank, Layout { separator, n_fields, space_separated: false }));
-        }
-    }
-    let mut layout = best.map_or(Layout { separator: b',', n_fields: 1, space_separated: false }, |(_, layout)| layout);
+        (rank, Layout { separator, n_fields, space_separated: false })
+    });
+    let [first, rest @ ..] = ranked;
+    let (_, mut layout) = rest.into_iter().fold(first, |best, next| if next.0 > best.0 { next } else { best });
     let words = |row: &&[u8]| row.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
     layout.space_separated = layout.n_fields == 1 && !rows.is_empty() && rows.iter().take(2).all(|row| words(row) > 1);
     layout
