@@ -1,47 +1,95 @@
-//! Options of `pam-bench`.
+//! Command line of `pam-bench`.
 
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
+use pam_cli::RunArgs;
 
 /// Record a protocol on a virtual bench.
+///
+/// The bench holds a muscle whose parameters are known, takes it through a protocol, and logs pressure,
+/// length and force with the noise of real sensors. A fit that finds the parameters again can be trusted with
+/// a recording of a real muscle.
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(
+    version,
+    after_help = "Example: forty seconds of isometric ramps, and the truth behind them\n  \
+                  pam-bench --muscle configs/muscle-nominal.toml --protocol isometric-ramps --duration-scale 0.1 \
+                  --out ramps.csv --truth ramps.json\n\n\
+                  Exit codes: 0 done, 2 input or usage."
+)]
 pub(crate) struct Args {
-    /// Muscle file.
+    /// Muscle file: dimensions as measured, see configs/muscle-nominal.toml.
     #[arg(long, value_name = "M.toml", required_unless_present = "list_protocols")]
     pub(crate) muscle: Option<PathBuf>,
-    /// Protocol by name.
+
+    /// What the rig does, by name; --list-protocols shows all.
     #[arg(long, value_name = "NAME", required_unless_present = "list_protocols")]
     pub(crate) protocol: Option<String>,
-    /// Seed.
-    #[arg(long, default_value_t = 0)]
-    pub(crate) seed: u64,
-    /// Sampling rate.
-    #[arg(long, default_value_t = 200.0)]
-    pub(crate) rate: f64,
-    /// Duration relative to that in the catalogue.
-    #[arg(long, default_value_t = 1.0)]
-    pub(crate) duration_scale: f64,
-    /// Factor on the noise of every channel.
-    #[arg(long, default_value_t = 1.0)]
-    pub(crate) noise: f64,
-    /// Clock of the logger.
-    #[arg(long, default_value = "ideal")]
-    pub(crate) clock: Clock,
-    /// Parameter of the true muscle.
-    #[arg(long, value_name = "NAME=VALUE")]
-    pub(crate) set: Vec<String>,
-    /// Log to write; - is standard output.
-    #[arg(long, value_name = "LOG.csv", required_unless_present = "list_protocols")]
+
+    /// Log to write, with the columns time_s, pressure_kPa, length_mm and force_N; - is standard output.
+    #[arg(long, value_name = "LOG.csv", required_unless_present_any = ["list_protocols", "check"])]
     pub(crate) out: Option<PathBuf>,
-    /// List the protocols.
+
+    /// Also write what no logger sees: parameters, sensors and command, as JSON; - is standard output.
+    #[arg(long, value_name = "TRUTH.json")]
+    pub(crate) truth: Option<PathBuf>,
+
+    /// Give the muscle another parameter than the nominal one, in SI; may be repeated. Parameters: k1, k2,
+    /// k3 (N), c10 and c01 (Pa), strand_modulus (Pa), rubber_friction, strand_friction.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<(String, f64)>,
+
+    /// Sampling rate of the logger, in Hz.
+    #[arg(long, value_name = "HZ", default_value_t = 200.0)]
+    pub(crate) rate: f64,
+
+    /// Duration relative to the catalogue: shortens holds and sweeps and leaves out cycles; where one cycle
+    /// is left, it runs faster.
+    #[arg(long, value_name = "X", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub(crate) duration_scale: f64,
+
+    /// Highest pressure, in kPa; the pressures of a protocol are scaled to it.
+    #[arg(long, value_name = "KPA", default_value_t = 500.0, allow_negative_numbers = true)]
+    pub(crate) highest_pressure: f64,
+
+    /// Lowest tension that a contracting muscle is taken to, in N; -inf lets it hang slack.
+    #[arg(long, value_name = "N", default_value_t = 5.0, allow_hyphen_values = true)]
+    pub(crate) lowest_tension: f64,
+
+    /// Noise of every channel relative to that of the sensors, which is 0.5 kPa, 0.03 mm and 0.2 N; 0 leaves
+    /// only quantization.
+    #[arg(long, value_name = "X", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub(crate) noise: f64,
+
+    /// Share of the force noise that remains after 5 ms, from 0 (white) to below 1.
+    #[arg(long, value_name = "RHO", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub(crate) force_noise_correlation: f64,
+
+    /// Clock of the logger: ideal, or cut to whole milliseconds, so that stamps repeat above 1 kHz.
+    #[arg(long, value_name = "CLOCK", default_value = "ideal")]
+    pub(crate) clock: Clock,
+
+    /// Show every protocol with its number in the catalogue, and stop.
     #[arg(long)]
     pub(crate) list_protocols: bool,
+
+    #[command(flatten)]
+    pub(crate) run: RunArgs,
 }
 
+/// Clock of the logger.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum Clock {
+    /// The time of the sample.
     Ideal,
+    /// Whole milliseconds.
     Ms,
+}
+
+/// Reads `name=value`.
+fn setting(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, as in k1=0.9")?;
+    let value = value.trim().parse().map_err(|_| format!("\"{value}\" is no number"))?;
+    Ok((name.trim().to_owned(), value))
 }

@@ -2,9 +2,8 @@
 
 mod args;
 mod run;
-
-use clap::Parser;
+mod truth;
 
 fn main() -> std::process::ExitCode {
-    run::main(&args::Args::parse())
+    pam_cli::main_with_schema::<args::Args, truth::Truth>(run::run)
 }

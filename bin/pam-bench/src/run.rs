@@ -1,55 +1,118 @@
-//! Runs `pam-bench`.
+//! From arguments to files.
 
-use std::io::Write;
-use std::process::ExitCode;
+use std::io::Write as _;
 
-use anyhow::{Context, Result};
+use anyhow::{Context as _, Result, anyhow};
+use pam_cli::{Console, Output, OutputError, Verdict, finish_all, nearest};
 use pam_core::muscle::MuscleFile;
+use pam_virtual_bench::parameters::ParameterError;
+use pam_virtual_bench::protocol::{ALL, ProtocolError};
 use pam_virtual_bench::sensors::Clock;
-use pam_virtual_bench::parameters::Parameters;
-use pam_virtual_bench::{Bench, Options, TrueMuscle, command, protocol};
+use pam_virtual_bench::{Bench, Options, Parameters, Protocol, TrueMuscle};
 
 use crate::args::{self, Args};
+use crate::truth::Truth;
 
-pub(crate) fn main(args: &Args) -> ExitCode {
-    match run(args) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            let _ = writeln!(std::io::stderr(), "error: {error:#}");
-            ExitCode::from(2)
-        }
+pub(crate) fn run(args: &Args) -> Result<Verdict> {
+    let console = args.run.start()?;
+    if args.list_protocols {
+        list_protocols()?;
+        return Ok(Verdict::Accepted);
     }
+    let path = args.muscle.as_deref().context("--muscle is missing")?;
+    let file = MuscleFile::read(path)?;
+    let protocol = protocol_named(args.protocol.as_deref().context("--protocol is missing")?)?;
+    let bench = bench(args, file, protocol)?;
+    describe(&console, &bench);
+    if args.run.check {
+        return Ok(Verdict::Accepted);
+    }
+    let mut out = Output::open(args.out.as_deref().context("--out is missing")?)?.apart_from([path])?;
+    let truth = args.truth.as_deref().map(|truth| Output::open(truth)?.apart_from([path])).transpose()?;
+    bench.record(args.run.seed).write_csv(&mut out)?;
+    let mut outputs = vec![out];
+    if let Some(mut truth) = truth {
+        let artifact = Truth::of(&bench, protocol, args, path)?;
+        serde_json::to_writer_pretty(&mut truth, &artifact)?;
+        writeln!(truth)?;
+        outputs.push(truth);
+    }
+    finish_all(outputs)?;
+    Ok(Verdict::Accepted)
 }
 
-fn run(args: &Args) -> Result<()> {
-    if args.list_protocols {
-        for protocol in protocol::ALL {
-            writeln!(std::io::stdout(), "{:<20}{:<6}{}", protocol.name, protocol.id, protocol.summary)?;
-        }
-        return Ok(());
-    }
-    let file = MuscleFile::read(args.muscle.as_deref().context("no muscle")?)?;
+/// The table of protocols, on standard output.
+fn list_protocols() -> Result<(), OutputError> {
+    let lines: Vec<String> =
+        ALL.into_iter().map(|Protocol { name, id, summary, .. }| format!("{name:<20}{id:<6}{summary}\n")).collect();
+    pam_cli::write_file("-", lines.concat())
+}
+
+fn protocol_named(name: &str) -> Result<Protocol> {
+    Protocol::named(name).map_err(|error| match nearest(name, ALL.map(|protocol| protocol.name)) {
+        Some(nearest) => anyhow!("{error}; did you mean \"{nearest}\"?"),
+        None => anyhow!("{error}; --list-protocols shows all"),
+    })
+}
+
+/// Parameters of the muscle: nominal, strands as in the file, then as set.
+fn parameters(args: &Args, file: &MuscleFile) -> Result<Parameters> {
     let mut parameters = Parameters { strand_modulus_pa: file.strand_modulus_pa, ..Parameters::nominal() };
-    for setting in &args.set {
-        let (name, value) = setting.split_once('=').context("--set takes NAME=VALUE")?;
-        parameters.set(name, value.parse().with_context(|| format!("--set {setting}"))?)?;
+    for (name, value) in &args.set {
+        parameters.set(name, *value).map_err(|error| match &error {
+            ParameterError::Unknown { name } => {
+                let known = Parameters::NAMES.map(|(name, _)| name);
+                match nearest(name, known) {
+                    Some(nearest) => anyhow!("--set: {error}; did you mean \"{nearest}\"?"),
+                    None => anyhow!("--set: {error}; it has {}", known.join(", ")),
+                }
+            }
+            ParameterError::OutOfRange { .. } => anyhow!("--set: {error}"),
+        })?;
     }
+    Ok(parameters)
+}
+
+fn bench(args: &Args, file: MuscleFile, protocol: Protocol) -> Result<Bench> {
+    let parameters = parameters(args, &file)?;
     let muscle = TrueMuscle::new(file.muscle, file.strand_modulus_pa, parameters);
-    let options = Options { seed: args.seed, duration_scale: args.duration_scale, ..Options::default() };
-    let name = args.protocol.as_deref().context("no protocol")?;
-    let bench = Bench::new(muscle.clone(), command(name, &muscle, &options)?);
+    let options = Options {
+        seed: args.run.seed,
+        duration_scale: args.duration_scale,
+        highest_pressure_pa: args.highest_pressure * 1e3,
+        lowest_tension_n: args.lowest_tension,
+    };
+    let command = protocol.command(&muscle, &options).map_err(|error| {
+        let option = match &error {
+            ProtocolError::DurationScale { .. } => "--duration-scale: ",
+            ProtocolError::HighestPressure { .. } => "--highest-pressure: ",
+            _ => "",
+        };
+        anyhow!("{option}{error}")
+    })?;
+    let bench = Bench::new(muscle, command);
     let mut sensors = bench.sensors().clone().with_noise_times(args.noise);
-    if matches!(args.clock, args::Clock::Ms) {
-        sensors.clock = Clock::Milliseconds;
-    }
-    let recording = bench.with_sensors(sensors)?.at_rate(args.rate)?.record(args.seed);
-    let mut bytes = Vec::new();
-    recording.write_csv(&mut bytes)?;
-    let out = args.out.as_deref().context("no output")?;
-    if out.as_os_str() == "-" {
-        std::io::stdout().write_all(&bytes)?;
-    } else {
-        std::fs::write(out, bytes).with_context(|| format!("cannot write {}", out.display()))?;
-    }
-    Ok(())
+    sensors.force_n.noise_correlation = args.force_noise_correlation;
+    sensors.clock = match args.clock {
+        args::Clock::Ideal => Clock::Ideal,
+        args::Clock::Ms => Clock::Milliseconds,
+    };
+    Ok(bench.with_sensors(sensors)?.at_rate(args.rate)?)
+}
+
+/// One line: what will be recorded.
+fn describe(console: &Console, bench: &Bench) {
+    let (lowest_pa, highest_pa) = bench.command().pressure_range_pa();
+    let (shortest_m, longest_m) = bench.command().length_range_m();
+    let logged_s = bench.command().logged_s();
+    console.note(format!(
+        "{}: {:.0} s, about {:.0} rows, {:.0} to {:.0} kPa, {:.1} to {:.1} mm",
+        bench.command().protocol,
+        logged_s,
+        logged_s * bench.rate_hz(),
+        lowest_pa * 1e-3,
+        highest_pa * 1e-3,
+        shortest_m * 1e3,
+        longest_m * 1e3,
+    ));
 }

@@ -1,12 +1,10 @@
 //! Parameters of the muscle's tension, by name and in SI.
 
-use serde::Serialize;
-
 /// Modulus of nylon monofilament, in Pa (2–4 GPa).
 pub const NYLON_MODULUS_PA: f64 = 3e9;
 
 /// Parameters of the muscle's tension, in SI.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     /// Gain of the gas term, `k₁`.
     pub k1: f64,

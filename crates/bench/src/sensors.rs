@@ -6,7 +6,6 @@
 use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Dxsm;
-use serde::Serialize;
 
 use crate::true_muscle::TrueMuscle;
 
@@ -14,7 +13,7 @@ use crate::true_muscle::TrueMuscle;
 pub const CORRELATION_RATE_HZ: f64 = 200.0;
 
 /// One channel of the logger, in the unit in which it writes.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
     /// Standard deviation of the noise.
     pub noise_rms: f64,
@@ -68,8 +67,7 @@ impl Channel {
 }
 
 /// How the logger stamps a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clock {
     /// With the time of the sample.
     Ideal,
@@ -104,7 +102,7 @@ impl Clock {
 }
 
 /// The sensors of the rig and the clock of its logger.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Sensors {
     /// Pressure gauge, in kPa.
     pub pressure_kpa: Channel,

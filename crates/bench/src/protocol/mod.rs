@@ -18,7 +18,7 @@ use crate::true_muscle::TrueMuscle;
 pub struct Protocol {
     /// Name on the command line.
     pub name: &'static str,
-    /// Number in the catalogue of bench protocols.
+    /// Number in the catalogue of bench protocols; `-` where it is a use and not a test.
     pub id: &'static str,
     /// What it does and what it shows, in one line.
     pub summary: &'static str,
@@ -113,7 +113,7 @@ pub const ALL: [Protocol; 15] = [
     },
     Protocol {
         name: "lift",
-        id: "lift",
+        id: "-",
         summary: "the elbow lifts three payloads by 0.3 rad and lowers them: the use of the muscle",
         build: loaded::lift,
     },

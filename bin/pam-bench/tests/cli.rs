@@ -1,0 +1,178 @@
+//! Runs the executable.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn configs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs")
+}
+
+fn nominal() -> String {
+    configs().join("muscle-nominal.toml").to_str().expect("a path of readable characters").to_owned()
+}
+
+fn pam_bench(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pam-bench")).args(arguments).output().expect("the program starts")
+}
+
+/// Records a lift to standard output, with more arguments.
+fn lift(arguments: &[&str]) -> Output {
+    let muscle = nominal();
+    let mut all = vec!["--muscle", &muscle, "--protocol", "lift", "--out", "-"];
+    all.extend(arguments);
+    pam_bench(&all)
+}
+
+fn error_line(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty());
+    let text = String::from_utf8_lossy(&output.stderr);
+    let errors: Vec<&str> = text.lines().filter(|line| line.starts_with("error: ")).collect();
+    assert_eq!(errors.len(), 1, "{text}");
+    errors[0].to_owned()
+}
+
+#[test]
+fn a_log_goes_to_standard_output_and_the_note_beside_it() {
+    let output = lift(&[]);
+    assert_eq!(output.status.code(), Some(0));
+    let log = String::from_utf8(output.stdout).unwrap();
+    assert!(log.starts_with("time_s,pressure_kPa,length_mm,force_N\n0.000,"), "{log:.80}");
+    let note = String::from_utf8(output.stderr).unwrap();
+    assert!(note.starts_with("note: lift: 38 s, about 7600 rows, "), "{note}");
+}
+
+#[test]
+fn quiet_says_nothing() {
+    assert!(lift(&["--quiet"]).stderr.is_empty());
+}
+
+#[test]
+fn equal_seeds_give_equal_bytes_on_any_number_of_threads() {
+    let one = lift(&["--seed", "4", "--threads", "1"]).stdout;
+    assert_eq!(one, lift(&["--seed", "4", "--threads", "2"]).stdout);
+    assert_ne!(one, lift(&["--seed", "5"]).stdout);
+}
+
+#[test]
+fn every_muscle_in_configs_passes_every_protocol() {
+    let list = pam_bench(&["--list-protocols"]);
+    assert_eq!(list.status.code(), Some(0));
+    let protocols = String::from_utf8(list.stdout).unwrap();
+    assert_eq!(protocols.lines().count(), 15);
+    let mut muscles = 0;
+    for entry in std::fs::read_dir(configs()).unwrap() {
+        let path = entry.unwrap().path();
+        if !path.file_name().unwrap().to_str().unwrap().starts_with("muscle-") {
+            continue;
+        }
+        muscles += 1;
+        for protocol in protocols.lines().map(|line| line.split_whitespace().next().unwrap()) {
+            let output = pam_bench(&["--muscle", path.to_str().unwrap(), "--protocol", protocol, "--check", "--quiet"]);
+            assert_eq!(output.status.code(), Some(0), "{}, {protocol}", path.display());
+            assert!(output.stdout.is_empty() && output.stderr.is_empty());
+        }
+    }
+    assert!(muscles >= 3);
+}
+
+#[test]
+fn the_truth_names_parameters_and_sensors_as_its_schema_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let (log, truth) = (folder.path().join("log.csv"), folder.path().join("truth.json"));
+    let muscle = nominal();
+    let output = pam_bench(&[
+        "--muscle",
+        &muscle,
+        "--protocol",
+        "dwell",
+        "--duration-scale",
+        "0.01",
+        "--set",
+        "k1=0.85",
+        "--out",
+        log.to_str().unwrap(),
+        "--truth",
+        truth.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(log.exists());
+    let truth: serde_json::Value = serde_json::from_slice(&std::fs::read(truth).unwrap()).unwrap();
+    let schema: serde_json::Value = serde_json::from_slice(&pam_bench(&["--schema"]).stdout).unwrap();
+    jsonschema::validate(&schema, &truth).unwrap();
+    assert_eq!(truth["schema"], "pam-bench-truth/1");
+    assert_eq!(truth["parameters"][0]["value"], 0.85);
+    assert_eq!(truth["config"]["protocol_id"], "P14");
+}
+
+#[test]
+fn a_misspelt_protocol_is_refused_with_the_nearest_name() {
+    let output = pam_bench(&["--muscle", &nominal(), "--protocol", "isobaric-triangle", "--out", "-"]);
+    let expected = "error: there is no protocol \"isobaric-triangle\"; did you mean \"isobaric-triangles\"?";
+    assert_eq!(error_line(&output), expected);
+}
+
+#[test]
+fn a_misspelt_parameter_is_refused_with_the_nearest_name() {
+    let line = error_line(&lift(&["--set", "ruber_friction=1e-3"]));
+    assert_eq!(line, "error: --set: the muscle has no parameter \"ruber_friction\"; did you mean \"rubber_friction\"?");
+}
+
+#[test]
+fn values_out_of_range_are_refused_with_the_range() {
+    for (arguments, place) in [
+        (["--noise", "-1"], "noise of the pressure channel is -0.5"),
+        (["--rate", "0"], "sampling rate 0 Hz"),
+        (["--duration-scale", "0"], "--duration-scale: duration scale 0"),
+        (["--highest-pressure", "9000"], "--highest-pressure: highest pressure 9000000 Pa"),
+        (["--set", "k1"], "expected NAME=VALUE, as in k1=0.9"),
+        (["--set", "k1=high"], "\"high\" is no number"),
+        (["--set", "k1=nan"], "k1 = NaN is outside 0 to 2"),
+        (["--force-noise-correlation", "1"], "correlation of the force noise is 1"),
+        (["--lowest-tension", "5000"], "finds this muscle slack"),
+    ] {
+        let line = error_line(&lift(&arguments));
+        assert!(line.contains(place), "{line}");
+    }
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_named_and_nothing_is_left_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let truth = folder.path().join("nowhere/truth.json");
+    let log = folder.path().join("log.csv");
+    let output = pam_bench(&[
+        "--muscle",
+        &nominal(),
+        "--protocol",
+        "lift",
+        "--out",
+        log.to_str().unwrap(),
+        "--truth",
+        truth.to_str().unwrap(),
+    ]);
+    assert!(error_line(&output).contains("nowhere"));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn the_muscle_file_is_never_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let muscle = folder.path().join("m.toml");
+    std::fs::copy(nominal(), &muscle).unwrap();
+    let muscle = muscle.to_str().unwrap();
+    error_line(&pam_bench(&["--muscle", muscle, "--protocol", "lift", "--out", muscle]));
+    assert!(std::fs::read_to_string(muscle).unwrap().contains("rest_length_mm"));
+}
+
+#[test]
+fn a_missing_muscle_file_is_named() {
+    let line = error_line(&pam_bench(&["--muscle", "no-such.toml", "--protocol", "lift", "--out", "-"]));
+    assert!(line.contains("no-such.toml"), "{line}");
+}
+
+#[test]
+fn help_has_an_example_that_works() {
+    let help = String::from_utf8(pam_bench(&["--help"]).stdout).unwrap();
+    assert!(help.contains("pam-bench --muscle configs/muscle-nominal.toml --protocol isometric-ramps"), "{help}");
+}
