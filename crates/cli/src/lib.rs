@@ -20,7 +20,7 @@
 //! }
 //! ```
 //!
-//! In reading order: [`main`](main()) and exit codes, options ([`RunArgs`]), what goes to standard error
+//! In reading order: [`main`](main()) and exit codes, options ([`RunArgs`], [`ReadArgs`]), what goes to standard error
 //! ([`Console`], [`Progress`]), what goes into files ([`Output`]), and what happens on Ctrl-C.
 
 mod console;
@@ -30,6 +30,7 @@ mod nearest;
 mod output;
 mod output_error;
 mod program;
+mod read_args;
 mod run_args;
 mod target;
 mod temporary;
@@ -41,4 +42,5 @@ pub use nearest::nearest;
 pub use output::{Output, commit_all, finish_all, write_file};
 pub use output_error::OutputError;
 pub use program::{main, main_with_schema, print_schema};
+pub use read_args::ReadArgs;
 pub use run_args::RunArgs;
