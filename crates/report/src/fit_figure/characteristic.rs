@@ -61,7 +61,7 @@ impl Abscissa {
         if self == Self::Length {
             format!("{} kPa", significant(level, 3))
         } else {
-            format!("{} mm", significant((level * 2.0).round() / 2.0, 4).trim_end_matches(".0"))
+            format!("{} mm", significant(level, 4).trim_end_matches(".0"))
         }
     }
 }

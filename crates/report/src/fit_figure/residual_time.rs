@@ -14,11 +14,15 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], no
     let slots = slots(recordings);
     let end_s = slots.last().map_or(1.0, |slot| slot.1);
     let (residual, cut) = limits(recordings, noise_n);
-    let panel = Panel {
-        frame: cell.inset(64.0, 64.0, 20.0, 46.0),
+    let mut panel = Panel {
+        frame: cell.inset(64.0, 52.0, 20.0, 46.0),
         x: Axis::exact("time, recordings one after the other (s)", 0.0, end_s, 12),
         y: Axis::linear("residual (N)", residual.0, residual.1, 5),
     };
+    let names = Names::new(&panel, recordings, &slots);
+    if names.two_rows {
+        panel.frame.top += 13.0;
+    }
     for (recording, (from, to)) in recordings.iter().zip(&slots) {
         if recording.role == Role::Validation {
             let (left, right) = (panel.at(*from, 0.0).0, panel.at(*to, 0.0).0);
@@ -41,7 +45,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], no
         panel.line(canvas, values, color.toward(palette::INK, 0.2), 1.0);
     }
     panel.line(canvas, [(0.0, 0.0), (end_s, 0.0)], palette::INK.faded(0.5), 0.75);
-    draw_names(canvas, &panel, recordings, &slots);
+    names.draw(canvas, &panel, recordings);
 
     let (y, _) = title(canvas, cell, "c", "Residual over time: measured less modelled force");
     let mut keys = vec![Key::new("estimation", Mark::Line(1.6), ESTIMATION.toward(palette::INK, 0.2))];
@@ -93,34 +97,51 @@ fn limits(recordings: &[Clean], noise_n: Option<f64>) -> ((f64, f64), bool) {
     ((from.min(-band), to.max(band)), cut)
 }
 
-/// Boundaries and, above the frame, the names: in one row, or in two in turn where that is too narrow, with the
-/// RMSE where there is room left.
-fn draw_names(canvas: &mut Canvas<'_>, panel: &Panel, recordings: &[Clean], slots: &[(f64, f64)]) {
-    let edges: Vec<(f64, f64)> =
-        slots.iter().map(|(from, to)| (panel.at(*from, 0.0).0, panel.at(*to, 0.0).0)).collect();
-    let full: Vec<&str> = recordings.iter().map(|recording| recording.name.as_str()).collect();
-    let fits = |names: &[&str], width: &dyn Fn(usize) -> f64| {
-        names.iter().enumerate().all(|(index, name)| text_width(name, NAME_SIZE) <= width(index))
-    };
-    let own = |index: usize| edges[index].1 - edges[index].0 - GAP;
-    // Up to where the next name in the same row begins.
-    let shared = |index: usize| edges.get(index + 1).map_or(own(index) + GAP, |next| next.1 - edges[index].0 - GAP);
-    let names = if fits(&full, &own) { full } else { distinctive(&full) };
-    let two_rows = !fits(&names, &own);
-    for (index, (name, recording)) in names.iter().zip(recordings).enumerate() {
-        let raised = two_rows && index % 2 == 0;
-        let (left, top) = (edges[index].0, panel.frame.top);
-        if index > 0 {
-            let rise = if raised { 27.0 } else { 14.0 };
-            canvas.line([(left, top - rise), (left, panel.frame.bottom)], palette::SILVER, 0.75);
+/// Names of the recordings above the frame: in one row, or in two in turn where that is too narrow.
+struct Names<'a> {
+    names: Vec<&'a str>,
+    /// Left and right end of each recording, in pixels.
+    edges: Vec<(f64, f64)>,
+    two_rows: bool,
+}
+
+impl<'a> Names<'a> {
+    fn new(panel: &Panel, recordings: &'a [Clean], slots: &[(f64, f64)]) -> Self {
+        let edges: Vec<(f64, f64)> =
+            slots.iter().map(|(from, to)| (panel.at(*from, 0.0).0, panel.at(*to, 0.0).0)).collect();
+        let fits = |names: &[&str]| {
+            names.iter().zip(&edges).all(|(name, edge)| text_width(name, NAME_SIZE) <= edge.1 - edge.0 - GAP)
+        };
+        let full: Vec<&str> = recordings.iter().map(|recording| recording.name.as_str()).collect();
+        let names = if fits(&full) { full } else { distinctive(&full) };
+        let two_rows = !fits(&names);
+        Self { names, edges, two_rows }
+    }
+
+    /// Draws boundaries and names, with the RMSE where there is room left.
+    fn draw(&self, canvas: &mut Canvas<'_>, panel: &Panel, recordings: &[Clean]) {
+        let top = panel.frame.top;
+        for (index, (name, recording)) in self.names.iter().zip(recordings).enumerate() {
+            let raised = self.two_rows && index % 2 == 0;
+            let (left, right) = self.edges[index];
+            if index > 0 {
+                // A raised boundary leaves out the lower row, whose names run across it.
+                let rise = if raised { 0.0 } else { 14.0 };
+                canvas.line([(left, top - rise), (left, panel.frame.bottom)], palette::SILVER, 0.75);
+                if raised {
+                    canvas.line([(left, top - 27.0), (left, top - 15.0)], palette::SILVER, 0.75);
+                }
+            }
+            // In two rows, up to where the next name in the same row begins.
+            let end = if self.two_rows { self.edges.get(index + 1).map_or(right, |next| next.1) } else { right };
+            let width = end - left - GAP;
+            let with_rmse = format!("{name}, RMSE {} N", significant(rmse_n(recording), 3));
+            let text = if text_width(&with_rmse, NAME_SIZE) <= width { with_rmse } else { shortened(name, width) };
+            let estimation = recording.role == Role::Estimation;
+            let color = if estimation { palette::GRAY } else { VALIDATION.toward(palette::INK, 0.3) };
+            let y = top - if raised { 21.0 } else { 8.0 };
+            canvas.text(&text, (left + 4.0, y), Anchor::Start, NAME_SIZE, color);
         }
-        let width = if two_rows { shared(index) } else { own(index) };
-        let with_rmse = format!("{name}, RMSE {} N", significant(rmse_n(recording), 3));
-        let text = if text_width(&with_rmse, NAME_SIZE) <= width { with_rmse } else { shortened(name, width) };
-        let color =
-            if recording.role == Role::Estimation { palette::GRAY } else { VALIDATION.toward(palette::INK, 0.3) };
-        let y = top - if raised { 21.0 } else { 8.0 };
-        canvas.text(&text, (left + 4.0, y), Anchor::Start, NAME_SIZE, color);
     }
 }
 
