@@ -3,44 +3,17 @@
 use std::path::Path;
 
 use anyhow::Result;
+use pam_core::artifact::{Input, InputRole, Tool, sha256_hex};
 use pam_core::muscle::Muscle;
 use pam_virtual_bench::sensors::{Channel, Clock, Sensors};
 use pam_virtual_bench::{Bench, Parameters, Protocol};
 use schemars::JsonSchema;
 use serde::Serialize;
-use sha2::Digest as _;
 
 use crate::args::Args;
 
 /// Schema name and version.
 const SCHEMA: &str = "pam-bench-truth/1";
-
-/// Program that wrote an artifact.
-#[derive(Debug, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct Tool {
-    /// Name of the program.
-    name: String,
-    /// Its version.
-    version: String,
-}
-
-/// A file that went into an artifact.
-#[derive(Debug, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    /// Path as given on the command line.
-    path: String,
-    /// SHA-256 of its bytes, hexadecimal.
-    sha256: String,
-    /// What it served as.
-    role: &'static str,
-}
-
-fn sha256_hex(bytes: &[u8]) -> String {
-    let digest: [u8; 32] = sha2::Sha256::digest(bytes).into();
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
-}
 
 /// The truth behind a log.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -135,7 +108,7 @@ impl Truth {
             inputs: vec![Input {
                 path: muscle_file.display().to_string(),
                 sha256: sha256_hex(&std::fs::read(muscle_file)?),
-                role: "muscle",
+                role: InputRole::Muscle,
             }],
             config: BenchConfig {
                 protocol: protocol.name,

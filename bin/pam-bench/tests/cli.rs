@@ -129,11 +129,23 @@ fn values_out_of_range_are_refused_with_the_range() {
         (["--set", "k1=high"], "\"high\" is no number"),
         (["--set", "k1=nan"], "k1 = NaN is outside 0 to 2"),
         (["--force-noise-correlation", "1"], "correlation of the force noise is 1"),
-        (["--lowest-tension", "5000"], "finds this muscle slack"),
+        (["--noise", "inf"], "noise of the pressure channel is inf"),
     ] {
         let line = error_line(&lift(&arguments));
         assert!(line.contains(place), "{line}");
     }
+}
+
+#[test]
+fn a_muscle_may_hang_slack_only_where_that_is_asked_for() {
+    let muscle = nominal();
+    let ramps = |lowest_tension| {
+        let fixed = ["--muscle", &muscle, "--protocol", "isometric-ramps", "--duration-scale", "0.02", "--out", "-"];
+        pam_bench(&[fixed.as_slice(), ["--lowest-tension", lowest_tension].as_slice()].concat())
+    };
+    assert!(error_line(&ramps("5000")).contains("finds this muscle slack: it never pulls 5000 N"));
+    let log = String::from_utf8(ramps("-inf").stdout).unwrap();
+    assert!(log.lines().any(|line| line.contains(",-6")), "the bladder pushes with some 60 N");
 }
 
 #[test]

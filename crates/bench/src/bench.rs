@@ -38,7 +38,7 @@ pub enum BenchError {
         value_hz: f64,
     },
     /// Noise that is not one.
-    #[error("noise of the {channel} channel is {value}; it cannot be negative, 0 switches it off")]
+    #[error("noise of the {channel} channel is {value}; it must be a number from 0 up, and 0 switches it off")]
     Noise {
         /// Which channel.
         channel: &'static str,
