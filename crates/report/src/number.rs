@@ -4,7 +4,14 @@
 /// never replaced by zeros.
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
-        return if value.is_nan() { "–".to_owned() } else { with_minus(format!("{value}")) };
+        return if value.is_nan() {
+            "–"
+        } else if value > 0.0 {
+            "∞"
+        } else {
+            "−∞"
+        }
+        .to_owned();
     }
     if value == 0.0 {
         return "0".to_owned();

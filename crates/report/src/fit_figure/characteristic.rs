@@ -183,10 +183,10 @@ fn draw_means(canvas: &mut Canvas<'_>, panel: &Panel, means: &[Mean]) {
     for curve in curves(means, same) {
         let (level, contracting) = (curve.level, curve.contracting);
         let dark = color(contracting).toward(palette::INK, 0.15);
-        if let [(x, y)] = curve.points[..] {
+        if let [(x, y)] = curve.model[..] {
             panel.line(canvas, [(x - 2.0 * same, y), (x + 2.0 * same, y)], dark, 1.6);
         }
-        panel.line(canvas, curve.points, dark, 1.6);
+        panel.line(canvas, curve.model, dark, 1.6);
         for mean in means.iter().filter(|mean| mean.level == level && mean.contracting == contracting) {
             let center = panel.at(mean.at, mean.force_n);
             if mean.role == Role::Estimation {
@@ -199,12 +199,15 @@ fn draw_means(canvas: &mut Canvas<'_>, panel: &Panel, means: &[Mean]) {
     }
 }
 
-/// Modelled force at one level in one direction, over recordings.
+/// One level in one direction, over recordings.
 #[derive(Debug)]
 struct Curve {
     level: usize,
     contracting: bool,
-    points: Vec<(f64, f64)>,
+    /// Modelled force over the abscissa.
+    model: Vec<(f64, f64)>,
+    /// Abscissa and measured force at the right end.
+    end: (f64, f64),
 }
 
 /// Curves through means; recordings closer than `same` are averaged.
@@ -217,14 +220,16 @@ fn curves(means: &[Mean], same: f64) -> Vec<Curve> {
                 means.iter().filter(|mean| mean.level == level && mean.contracting == contracting).collect();
             sorted.sort_by(|a, b| a.at.total_cmp(&b.at));
             let groups = sorted.chunk_by(|a, b| b.at - a.at <= same);
-            let points = groups.map(|group| {
+            let mut model = Vec::new();
+            let mut end = (f64::NAN, f64::NAN);
+            for group in groups {
                 let count = group.len() as f64;
-                let sum = |of: fn(&Mean) -> f64| group.iter().map(|mean| of(mean)).sum::<f64>() / count;
-                (sum(|mean| mean.at), sum(|mean| mean.model_n))
-            });
-            let points: Vec<_> = points.collect();
-            if !points.is_empty() {
-                curves.push(Curve { level, contracting, points });
+                let mean = |of: fn(&Mean) -> f64| group.iter().map(|mean| of(mean)).sum::<f64>() / count;
+                end = (mean(|mean| mean.at), mean(|mean| mean.force_n));
+                model.push((end.0, mean(|mean| mean.model_n)));
+            }
+            if !model.is_empty() {
+                curves.push(Curve { level, contracting, model, end });
             }
         }
     }
@@ -249,10 +254,8 @@ fn labels(
         None => labels.push((text, height, 1.0)),
     };
     for curve in curves(means, 0.0) {
-        if let Some((at, force_n)) = curve.points.last()
-            && reaches_edge(*at)
-        {
-            add(abscissa.level_text(levels[curve.level]), *force_n);
+        if reaches_edge(curve.end.0) {
+            add(abscissa.level_text(levels[curve.level]), curve.end.1);
         }
     }
     for recording in moving {
@@ -265,7 +268,7 @@ fn labels(
             continue;
         }
         let at_end: Vec<f64> =
-            along.iter().zip(&recording.model_n).filter(|(x, _)| **x >= end).map(|(_, force)| *force).collect();
+            along.iter().zip(&recording.force_n).filter(|(x, _)| **x >= end).map(|(_, force)| *force).collect();
         add(abscissa.level_text(mean(abscissa.across(recording))), mean(&at_end));
     }
     labels.into_iter().map(|(text, sum, count)| (sum / count, text, palette::GRAY)).collect()

@@ -92,6 +92,8 @@ fn widened(lowest: f64, highest: f64) -> (f64, f64) {
         (false, true) => (highest, highest),
         (false, false) => (0.0, 1.0),
     };
+    // Far enough from overflow for differences.
+    let (lowest, highest) = (lowest.clamp(-1e300, 1e300), highest.clamp(-1e300, 1e300));
     let size = lowest.abs().max(highest.abs());
     if highest - lowest > 1e-9 * size {
         return (lowest, highest);
