@@ -18,6 +18,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], no
         frame: cell.inset(64.0, 52.0, 20.0, 46.0),
         x: Axis::exact("time, recordings one after the other (s)", 0.0, end_s, 12),
         y: Axis::linear("residual (N)", residual.0, residual.1, 5),
+        upward_labels: false,
     };
     let names = Names::new(&panel, recordings, &slots);
     if names.two_rows {

@@ -37,6 +37,7 @@ impl Bars {
             frame: cell.inset(names + 26.0, 40.0, texts + 16.0, 46.0),
             x: axis,
             y: Axis::exact("", 0.0, self.bars.len().max(1) as f64, 1),
+            upward_labels: false,
         };
         for (value, _) in &panel.x.ticks {
             let x = panel.at(*value, 0.0).0;

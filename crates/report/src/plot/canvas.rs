@@ -28,7 +28,7 @@ pub enum Anchor {
     End,
 }
 
-/// A white sheet; see the [module](self) for its units.
+/// A white sheet, measured in pixels from its upper left corner.
 pub struct Canvas<'a> {
     backend: SVGBackend<'a>,
     failed: Option<FigureError>,

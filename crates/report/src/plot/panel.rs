@@ -16,13 +16,20 @@ pub struct Panel {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
+    /// Whether the labels of the horizontal axis read upward, being too wide to stand side by side.
+    pub upward_labels: bool,
 }
 
 impl Panel {
     /// Lays a panel into `cell`, leaving room for a title above, axis labels left and below, and `right`
     /// pixels on the right.
     pub fn new(cell: Rect, x: Axis, y: Axis, right: f64) -> Self {
-        Self { frame: cell.inset(64.0, 40.0, right, 46.0), x, y }
+        // Panels below one another line up unless a label is too wide for that.
+        let left = (widest_label(&y) + 36.0).clamp(64.0, 0.4 * cell.width().max(160.0));
+        let width = cell.width() - left - right;
+        let upward_labels = widest_label(&x) > 0.95 * width / x.ticks.len().max(1) as f64;
+        let bottom = if upward_labels { (widest_label(&x) + 38.0).min(0.4 * cell.height()) } else { 46.0 };
+        Self { frame: cell.inset(left, 40.0, right, bottom.max(46.0)), x, y, upward_labels }
     }
 
     /// Draws grid, axes, ticks and axis titles; data goes on top.
@@ -46,9 +53,14 @@ impl Panel {
         for (value, label) in &self.x.ticks {
             let x = self.at(*value, self.y.from).0;
             canvas.line([(x, bottom), (x, bottom + 4.0)], palette::SILVER, 1.0);
-            canvas.text(label, (x, bottom + 13.0), Anchor::Middle, TICK_SIZE, palette::GRAY);
+            if self.upward_labels {
+                canvas.upward(label, (x, bottom + 8.0), Anchor::End, TICK_SIZE, palette::GRAY);
+            } else {
+                canvas.text(label, (x, bottom + 13.0), Anchor::Middle, TICK_SIZE, palette::GRAY);
+            }
         }
-        canvas.text(&self.x.title, (0.5 * (left + right), bottom + 33.0), Anchor::Middle, TITLE_SIZE, palette::INK);
+        let below = if self.upward_labels { widest_label(&self.x) + 24.0 } else { 33.0 };
+        canvas.text(&self.x.title, (0.5 * (left + right), bottom + below), Anchor::Middle, TITLE_SIZE, palette::INK);
     }
 
     /// Draws the vertical axis alone.
@@ -60,7 +72,13 @@ impl Panel {
             canvas.line([(left - 4.0, y), (left, y)], palette::SILVER, 1.0);
             canvas.text(label, (left - 8.0, y), Anchor::End, TICK_SIZE, palette::GRAY);
         }
-        canvas.upward(&self.y.title, (left - 52.0, 0.5 * (top + bottom)), Anchor::Middle, TITLE_SIZE, palette::INK);
+        canvas.upward(
+            &self.y.title,
+            (left - (widest_label(&self.y) + 24.0).max(52.0), 0.5 * (top + bottom)),
+            Anchor::Middle,
+            TITLE_SIZE,
+            palette::INK,
+        );
     }
 
     /// Where a value lies on the canvas.
@@ -123,6 +141,10 @@ impl Panel {
             canvas.text(text, (self.frame.right + 8.0, y), Anchor::Start, TICK_SIZE, color);
         }
     }
+}
+
+fn widest_label(axis: &Axis) -> f64 {
+    axis.ticks.iter().map(|(_, label)| text_width(label, TICK_SIZE)).fold(0.0, f64::max)
 }
 
 /// Writes a panel's letter and title into the top of its cell; gives the height of its middle line and the
