@@ -2,24 +2,25 @@
 
 use pam_core::recording::{Calibration, ColumnMap, Columns, FixedChannel, ReadOptions};
 
+const HEADING: &str = "Reading recordings";
+
 /// How to read recordings; flatten it into the program's own arguments.
 #[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "Reading recordings")]
 pub struct ReadArgs {
     /// Names of the columns of a file without a header, - to skip one: force_N,pressure_kPa,time_s,-
-    #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "NAMES", allow_hyphen_values = true)]
     pub columns: Option<Columns>,
-    /// Another name for a column: pressure_bar="P [V]".
-    #[arg(long, value_name = "NAME=COLUMN")]
+    /// Other names for columns.
+    #[arg(long, help_heading = HEADING, help = "Another name for a column: pressure_bar=\"P [V]\"", value_name = "NAME=COLUMN")]
     pub map: Vec<ColumnMap>,
     /// A channel that was constant and not recorded: length_mm=126.75
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, help_heading = HEADING, value_name = "NAME=VALUE")]
     pub fixed: Vec<FixedChannel>,
     /// A channel from a transducer's reading: 'pressure_kPa = 125 * ai0 - 12.5'
-    #[arg(long, value_name = "NAME=LINE")]
+    #[arg(long, help_heading = HEADING, value_name = "NAME=LINE")]
     pub calibrate: Vec<Calibration>,
     /// Drop and count rows that cannot be used, instead of refusing the file.
-    #[arg(long)]
+    #[arg(long, help_heading = HEADING)]
     pub skip_bad_rows: bool,
 }
 
