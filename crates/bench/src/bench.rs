@@ -5,6 +5,7 @@
 
 use crate::mechanism::{Moment, base_chain};
 use crate::path::{Command, Knot};
+use crate::reach::REFERENCE_PRESSURE_PA;
 use crate::recording::{BenchRecording, Decimals};
 use crate::sensors::{Channel, Sensors, Stream};
 use crate::true_muscle::TrueMuscle;
@@ -62,9 +63,10 @@ pub enum BenchError {
 }
 
 impl Bench {
-    /// A bench with sensors suited to the muscle, at 200 Hz.
+    /// A bench with sensors suited to the muscle, the same for every protocol up to 500 kPa, at 200 Hz.
     pub fn new(muscle: TrueMuscle, command: Command) -> Self {
-        let sensors = Sensors::suited_to(&muscle, command.pressure_range_pa().1);
+        let highest_pressure_pa = command.pressure_range_pa().1.max(REFERENCE_PRESSURE_PA);
+        let sensors = Sensors::suited_to(&muscle, highest_pressure_pa);
         Self { muscle, command, sensors, rate_hz: DEFAULT_RATE_HZ, oversampling: DEFAULT_OVERSAMPLING }
     }
 

@@ -73,6 +73,14 @@ fn every_protocol_keeps_every_muscle_taut_and_within_reach() {
             let (lowest_pa, highest_pa) = bench.command().pressure_range_pa();
             assert!(lowest_pa >= 0.0 && highest_pa <= 500e3 + 1e-6, "{place}: {lowest_pa} {highest_pa}");
             assert!(recording.n_samples() > 10, "{place}");
+            let largest_error_n = recording
+                .force_n
+                .iter()
+                .zip(&recording.true_force_n)
+                .map(|(measured, truth)| (measured - truth).abs())
+                .fold(0.0, f64::max);
+            // Six standard deviations of the noise and half a step: the load cell never saturates.
+            assert!(largest_error_n < 6.0 * 0.2 + bench.sensors().force_n.step(), "{place}: {largest_error_n} N");
         }
     }
 }
@@ -234,7 +242,7 @@ fn golden_first_rows_of_a_log() {
     let head: Vec<&str> = text.lines().take(3).collect();
     assert_eq!(
         head,
-        ["time_s,pressure_kPa,length_mm,force_N", "0.000,23.67,266.949,56.484", "0.005,24.20,266.972,55.821"]
+        ["time_s,pressure_kPa,length_mm,force_N", "0.000,23.67,266.949,56.47", "0.005,24.20,266.972,55.80"]
     );
 }
 
