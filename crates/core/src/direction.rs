@@ -5,16 +5,15 @@
 //! standstill. Where the length stands still and the pressure moves, pressure takes its place: a braid that
 //! is held at its ends still slides under rising (+1, as if contracting) and falling pressure (-1).
 //!
-//! In a recording the future is known, so a flip is dated back to the extreme that it turned at. How exactly
-//! that extreme is known depends on the noise: within the threshold of it, before and after, the direction
-//! is *unsettled*, and a fit does not count those samples.
+//! In a recording the future is known, so a flip is dated back to where the motion turned. How exactly that
+//! is known depends on the noise: around it the direction is *unsettled*, and a fit does not count those
+//! samples.
 //!
 //! # Design
 //! The play acts on a centered moving average, because the range that white noise covers grows without end:
 //! five standard deviations of the raw channel would flip within seconds of a hold. Five of the raw channel
 //! are at least eleven of the average over [`WINDOW_S`] or five samples.
 
-use std::collections::VecDeque;
 use std::io;
 
 use schemars::JsonSchema;
@@ -129,12 +128,12 @@ fn marks_of(
     let half = ((0.5 * WINDOW_S / period_s).round() as usize).clamp(2, 50);
     let mut marks = vec![0; n];
     if driver == Driver::Pressure {
-        play(&moving_average(pressure_pa, half), thresholds.pressure_pa, carried, &mut marks);
+        play(&moving_average(pressure_pa, half), thresholds.pressure_pa, half, carried, &mut marks);
         fill_unknown(&mut marks);
         return marks;
     }
     let contraction: Vec<f64> = moving_average(length_m, half).iter().map(|length| -length).collect();
-    play(&contraction, thresholds.length_m, carried, &mut marks);
+    play(&contraction, thresholds.length_m, half, carried, &mut marks);
     let mut pressure: Option<Vec<f64>> = None;
     for still in standstills(time_s, &contraction, thresholds.length_m) {
         let pressure = pressure.get_or_insert_with(|| moving_average(pressure_pa, half));
@@ -142,7 +141,7 @@ fn marks_of(
         // A standstill in which the pressure rests as well keeps what the length says.
         if range(&pressure[still.clone()]) > thresholds.pressure_pa {
             marks[still.clone()].fill(0);
-            play(&pressure[still.clone()], thresholds.pressure_pa, before, &mut marks[still]);
+            play(&pressure[still.clone()], thresholds.pressure_pa, half, before, &mut marks[still]);
         }
     }
     fill_unknown(&mut marks);
@@ -189,16 +188,21 @@ fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The play operator with flips dated back to their extremes. `marks` becomes ±1, ±2 within `threshold`
-/// of an extreme that the direction flipped at, and 0 before the first motion if `carried` is 0.
-fn play(values: &[f64], threshold: f64, carried: i8, marks: &mut [i8]) {
+/// The play operator with flips dated back to where the motion turned. `marks` becomes ±1, ±2 around a flip,
+/// and 0 before the first motion if `carried` is 0.
+///
+/// A flip is noticed at `f`, one threshold away from the extreme. The last value half a threshold away, at
+/// `d`, tells the speed of the return, and going on backwards at that speed reaches the turn at
+/// `d - (f - d)`. After a hold that is the end of the hold, where the extreme itself is any peak of the noise.
+/// A turn that accelerates, as a sine does, lies up to `1.6 (f - d)` earlier; so much before is unsettled,
+/// and half a moving average more.
+fn play(values: &[f64], threshold: f64, half: usize, carried: i8, marks: &mut [i8]) {
     let Some(&first) = values.first() else { return };
     let mut sign = carried;
     // Both extremes while the direction is unknown; only the leading one counts afterwards.
     let (mut high, mut high_at) = (first, 0);
     let (mut low, mut low_at) = (first, 0);
-    // Approach to the leading extreme: values, seen in the direction of motion, of which all later are higher.
-    let mut approach: VecDeque<(usize, f64)> = VecDeque::new();
+    let mut last_turn = 0;
     for (index, &value) in values.iter().enumerate() {
         if value > high {
             (high, high_at) = (value, index);
@@ -212,39 +216,31 @@ fn play(values: &[f64], threshold: f64, carried: i8, marks: &mut [i8]) {
             -1 if value - low > threshold => Some(1),
             _ => None,
         };
-        let ahead = |sign: i8| if sign < 0 { -value } else { value };
-        if let Some(new_sign) = turned {
-            let extreme_at = if new_sign > 0 { low_at } else { high_at };
-            if sign != 0 {
-                let extreme = if sign > 0 { high } else { -low };
-                // The last value on the way to the extreme that was still a threshold away from it.
-                let near =
-                    approach.iter().rev().find(|(_, value)| *value <= extreme - threshold).map_or(0, |(at, _)| at + 1);
-                marks[near..extreme_at].fill(2 * sign);
-                marks[extreme_at..index].fill(2 * new_sign);
-            } else {
-                marks[extreme_at..index].fill(new_sign);
-            }
-            sign = new_sign;
-            (high, high_at, low, low_at) = (value, index, value, index);
-            approach.clear();
-        } else if sign > 0 && value >= high {
-            (low, low_at) = (value, index);
-        } else if sign < 0 && value <= low {
-            (high, high_at) = (value, index);
-        }
         marks[index] = sign;
-        if sign != 0 {
-            let value = ahead(sign);
-            while approach.back().is_some_and(|&(_, earlier)| earlier >= value) {
-                approach.pop_back();
+        let Some(new_sign) = turned else {
+            if sign > 0 && value >= high {
+                (low, low_at) = (value, index);
+            } else if sign < 0 && value <= low {
+                (high, high_at) = (value, index);
             }
-            approach.push_back((index, value));
-            let extreme = if sign > 0 { high } else { -low };
-            while approach.len() > 1 && approach[1].1 <= extreme - threshold {
-                approach.pop_front();
+            continue;
+        };
+        let (extreme, extreme_at) = if new_sign > 0 { (low, low_at) } else { (high, high_at) };
+        let half_way = |at: &usize| (values[*at] - extreme).abs() <= 0.5 * threshold;
+        let departed = (extreme_at..index).rev().find(half_way).unwrap_or(extreme_at);
+        let took = index - departed;
+        let turn = departed.saturating_sub(took).max(extreme_at);
+        if sign != 0 {
+            let doubtful = turn.saturating_sub(2 * took + half).max(last_turn);
+            for mark in &mut marks[doubtful..turn] {
+                *mark = 2 * mark.signum();
             }
         }
+        marks[turn..=index].fill(2 * new_sign);
+        sign = new_sign;
+        last_turn = turn;
+        marks[index] = sign;
+        (high, high_at, low, low_at) = (value, index, value, index);
     }
 }
 
@@ -290,6 +286,38 @@ mod tests {
         (0..n).map(|index| index as f64 * 0.005).collect()
     }
 
+    #[test]
+    fn a_hold_before_a_return_belongs_to_the_way_there() {
+        let n = 6000;
+        let mut length: Vec<f64> = (0..n)
+            .map(|i| match i {
+                0..1000 => 0.267 - f64::from(i) * 25e-6,
+                1000..4000 => 0.242,
+                _ => 0.242 + f64::from(i - 4000) * 10e-6,
+            })
+            .collect();
+        let n = n as usize;
+        for (value, noise) in length.iter_mut().zip(noise(n, 30e-6, 4)) {
+            *value += noise;
+        }
+        let marks = marks_of(&times(n), &vec![3e5; n], &length, THRESHOLDS, Driver::Motion, 0);
+        assert!(marks[..3930].iter().all(|&mark| mark == 1));
+        assert!(marks[4030..].iter().all(|&mark| mark == -1));
+    }
+
+    #[test]
+    fn a_slow_sine_is_right_wherever_it_is_settled() {
+        let n = 8000;
+        let omega = 2.0 * std::f64::consts::PI * 0.05 * 0.005;
+        let noise = noise(n, 30e-6, 6);
+        let length: Vec<f64> = (0..n).map(|i| 0.24 + 0.01 * (omega * i as f64).cos() + noise[i]).collect();
+        let marks = marks_of(&times(n), &vec![3e5; n], &length, THRESHOLDS, Driver::Motion, 0);
+        for (index, mark) in marks.iter().enumerate() {
+            let expected = if (omega * index as f64).sin() > 0.0 { 1 } else { -1 };
+            assert!(index < 100 || *mark == expected || mark.abs() == 2, "row {index}: {mark}");
+        }
+    }
+
     /// A triangle of 40 mm at 5 mm/s, 200 Hz, with 30 µm of noise: 8 s each way.
     #[test]
     fn a_noisy_triangle_flips_once_per_turn() {
@@ -312,6 +340,18 @@ mod tests {
         }
         let unsettled = marks.iter().filter(|mark| mark.abs() == 2).count();
         assert!((10..80).contains(&unsettled), "{unsettled}");
+    }
+
+    #[test]
+    fn a_small_swing_leaves_what_came_before_it_settled() {
+        let n = 3000;
+        // 20 mm one way, then swings of 0.2 mm, barely above the threshold.
+        let length: Vec<f64> = (0..n)
+            .map(|i| if i < 2000 { 0.267 - f64::from(i) * 10e-6 } else { 0.247 + 1e-4 * (f64::from(i) * 0.05).sin() })
+            .collect();
+        let n = n as usize;
+        let marks = marks_of(&times(n), &vec![3e5; n], &length, THRESHOLDS, Driver::Motion, 0);
+        assert!(marks[..1980].iter().all(|&mark| mark == 1));
     }
 
     #[test]

@@ -17,6 +17,7 @@ struct Tally {
     n_samples: usize,
     n_unsettled: usize,
     residual_squares: f64,
+    unsettled_squares: f64,
     largest: f64,
     forces: f64,
     force_squares: f64,
@@ -41,9 +42,18 @@ impl Tally {
         self.force_squares += relative_n * relative_n;
     }
 
+    fn push_unsettled(&mut self, force_n: f64, model_n: f64) {
+        let residual_n = force_n - model_n;
+        if residual_n.is_finite() {
+            self.n_unsettled += 1;
+            self.unsettled_squares += residual_n * residual_n;
+        }
+    }
+
     fn merge(&mut self, other: &Self) {
+        self.n_unsettled += other.n_unsettled;
+        self.unsettled_squares += other.unsettled_squares;
         if other.n_samples == 0 {
-            self.n_unsettled += other.n_unsettled;
             return;
         }
         if self.n_samples == 0 {
@@ -54,7 +64,6 @@ impl Tally {
         self.force_squares += other.force_squares + 2.0 * shift_n * other.forces + n * shift_n * shift_n;
         self.forces += other.forces + n * shift_n;
         self.n_samples += other.n_samples;
-        self.n_unsettled += other.n_unsettled;
         self.residual_squares += other.residual_squares;
         self.largest = self.largest.max(other.largest);
     }
@@ -65,6 +74,9 @@ impl Tally {
         let share = self.residual_squares / spread;
         FitStatistics {
             rmse_n: (self.residual_squares / n).sqrt(),
+            rmse_all_n: ((self.residual_squares + self.unsettled_squares)
+                / (self.n_samples + self.n_unsettled).max(1) as f64)
+                .sqrt(),
             max_n: self.largest,
             r2: 1.0 - share,
             fit_percent: 100.0 * (1.0 - share.sqrt()),
@@ -128,11 +140,11 @@ fn tally(prepared: &Prepared, model: &ForceModel) -> std::io::Result<Tally> {
             let (pressure_pa, length_m, force_n) = (chunk.pressure_pa(), chunk.length_m(), chunk.force_n());
             for here in 0..chunk.n_rows() {
                 let row = chunk.first_row() + here;
+                let model_n = model.force_n(pressure_pa[here], length_m[here], prepared.direction.sign(row));
                 if prepared.direction.is_settled(row) {
-                    let model_n = model.force_n(pressure_pa[here], length_m[here], prepared.direction.sign(row));
                     tally.push(force_n[here], model_n);
                 } else {
-                    tally.n_unsettled += 1;
+                    tally.push_unsettled(force_n[here], model_n);
                 }
             }
             Ok(tally)
@@ -144,6 +156,44 @@ fn tally(prepared: &Prepared, model: &ForceModel) -> std::io::Result<Tally> {
     }
     Ok(total)
 }
+
+/// Root mean square, in N, of what the noise of all three channels does to the residual of a perfect model:
+/// `σ_F² + (∂F/∂p σ_p)² + (∂F/∂L σ_L)²`, over samples spread across the recordings.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn noise_floor_n(recordings: &[Prepared], model: &ForceModel) -> Result<f64, IdentifyError> {
+    let (mut squares, mut rows) = (0.0, 0.0);
+    for prepared in recordings {
+        let noise = |name: &str| prepared.quality.channel(name).map_or(0.0, |channel| channel.noise);
+        let (noise_pa, noise_m, noise_n) = (noise("pressure"), noise("length"), noise("force"));
+        let trace = trace(prepared, model)?;
+        let stride = (trace.time_s.len() / FLOOR_SAMPLES).max(1);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for index in (0..trace.time_s.len()).step_by(stride) {
+            let (pressure_pa, length_m, direction) =
+                (trace.pressure_pa[index], trace.length_m[index], trace.direction[index]);
+            let force_n = |p: f64, l: f64| model.force_n(p, l, direction);
+            // Steps of the noise itself: a chord is what noise sees.
+            let by_pressure_n =
+                0.5 * (force_n(pressure_pa + noise_pa, length_m) - force_n(pressure_pa - noise_pa, length_m));
+            let by_length_n =
+                0.5 * (force_n(pressure_pa, length_m + noise_m) - force_n(pressure_pa, length_m - noise_m));
+            let square = noise_n * noise_n + by_pressure_n * by_pressure_n + by_length_n * by_length_n;
+            if square.is_finite() {
+                sum += square;
+                count += 1.0;
+            }
+        }
+        let n = prepared.recording.samples.n_rows() as f64;
+        squares += n * sum / f64::max(count, 1.0);
+        rows += n;
+    }
+    Ok((squares / f64::max(rows, 1.0)).sqrt())
+}
+
+/// Samples of one recording that the noise floor is averaged over, about.
+const FLOOR_SAMPLES: usize = 1000;
 
 /// Samples of `prepared` beside what `model` says.
 ///

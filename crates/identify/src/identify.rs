@@ -13,7 +13,7 @@ use pam_core::recording::Recording;
 
 use crate::condense::{Condensed, condense};
 use crate::error::IdentifyError;
-use crate::evaluate::{Evaluation, Trace, evaluate, trace};
+use crate::evaluate::{Evaluation, Trace, evaluate, noise_floor_n, trace};
 use crate::fit::{Fit, FitOptions, search};
 use crate::prepare::{Gated, Prepared, direct, gate, thresholds};
 use crate::problem::ForceProblem;
@@ -42,6 +42,10 @@ pub struct Request {
     pub fix: Vec<(Parameter, f64)>,
     /// `C₀₁ / C₁₀`.
     pub bladder_ratio: f64,
+    /// By how much the length turns back before the direction flips, in m; from the noise if not given.
+    pub length_play_m: Option<f64>,
+    /// Likewise for the pressure, in Pa.
+    pub pressure_play_pa: Option<f64>,
     /// Go on where an instrument fault is suspected.
     pub accept_implausible: bool,
     /// Show what the columns reach without bounds.
@@ -77,7 +81,9 @@ pub struct Identified {
     pub validation_fit: Evaluation,
     /// Weights without bounds, where asked for.
     pub unbounded: Option<UnboundedFit>,
-    /// White noise of the force, in N.
+    /// White noise of the force channel, in N.
+    pub force_noise_n: f64,
+    /// What the noise of all channels leaves of a perfect model, in N.
     pub noise_floor_n: f64,
     /// Lowest RMSE that the columns allow, in N.
     pub column_floor_rmse_n: f64,
@@ -138,6 +144,8 @@ pub fn check(request: Request) -> Result<Checked, IdentifyError> {
         free: request.free,
         fix: request.fix,
         bladder_ratio: request.bladder_ratio,
+        length_play_m: request.length_play_m,
+        pressure_play_pa: request.pressure_play_pa,
         unbounded: request.unbounded,
     })
 }
@@ -154,6 +162,8 @@ pub struct Checked {
     free: Vec<Parameter>,
     fix: Vec<(Parameter, f64)>,
     bladder_ratio: f64,
+    length_play_m: Option<f64>,
+    pressure_play_pa: Option<f64>,
     unbounded: bool,
 }
 
@@ -169,16 +179,20 @@ impl Checked {
     /// [`IdentifyError`] names the recording and the remedy.
     pub fn identify(mut self) -> Result<Identified, IdentifyError> {
         let validation = self.gates.split_off(self.n_estimation);
-        let thresholds = thresholds(&self.gates, &self.muscle.muscle);
+        let from_noise = thresholds(&self.gates, &self.muscle.muscle);
+        let thresholds = Thresholds {
+            length_m: self.length_play_m.unwrap_or(from_noise.length_m),
+            pressure_pa: self.pressure_play_pa.unwrap_or(from_noise.pressure_pa),
+        };
         let largest_n_per_m =
             self.gates.iter().map(|gate| gate.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
-        let noise_floor_n = self.noise_floor_n();
+        let force_noise_n = self.force_noise_n();
         let estimation = direct(std::mem::take(&mut self.gates), thresholds, self.form)?;
         let validation = direct(validation, thresholds, self.form)?;
 
         let columns = ForceColumns::new(&self.muscle.muscle, self.muscle.strand_modulus_pa, self.form, largest_n_per_m);
         let condensed = condense(&estimation, &columns, 1, None)?;
-        let (space, unidentifiable) = self.search_space(&columns, &condensed, noise_floor_n);
+        let (space, unidentifiable) = self.search_space(&columns, &condensed, force_noise_n);
         if condensed.total.n_rows() <= 2 * N_COLUMNS as u64 {
             return Err(IdentifyError::TooFewSamples {
                 path: estimation[0].recording.path.clone(),
@@ -203,6 +217,7 @@ impl Checked {
         let model = self.model(&found.muscle, space.parameters(&found.fit.x[..space.free.len()]));
         let estimation_fit = evaluate(&estimation, &model)?;
         let validation_fit = evaluate(&validation, &model)?;
+        let noise_floor_n = noise_floor_n(&estimation, &model)?;
         let unbounded = if self.unbounded { Some(unbounded_fit(&columns, &condensed, &validation)?) } else { None };
         let lags = faults::lag::find(&estimation, &columns)
             .map_err(|reason| IdentifyError::Samples { path: estimation[0].recording.path.clone(), reason })?;
@@ -220,6 +235,7 @@ impl Checked {
             estimation_fit,
             validation_fit,
             unbounded,
+            force_noise_n,
             noise_floor_n,
             column_floor_rmse_n,
             twin_cosines: report::twin_cosines(&condensed.total),
@@ -230,7 +246,7 @@ impl Checked {
     }
 
     /// White noise of the force over all estimation recordings.
-    fn noise_floor_n(&self) -> f64 {
+    fn force_noise_n(&self) -> f64 {
         let (mut squares, mut rows) = (0.0, 0.0);
         for gate in &self.gates {
             if let Some(force) = gate.quality.channel("force") {
@@ -448,6 +464,7 @@ impl Identified {
                     .map(|(prepared, &statistics)| RecordingFit { path: prepared.recording.path.clone(), statistics })
                     .collect(),
                 noise_floor_n: self.noise_floor_n,
+                force_noise_n: self.force_noise_n,
                 effective_samples: self.uncertainty.effective_samples,
             },
             domain: Domain {

@@ -15,6 +15,7 @@ pub mod faults;
 pub mod fit;
 pub mod geometry;
 pub mod identify;
+pub mod predict;
 pub mod prepare;
 pub mod problem;
 pub mod report;

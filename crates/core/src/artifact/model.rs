@@ -177,8 +177,11 @@ pub struct FitReport {
     pub validation: Option<FitStatistics>,
     /// Every recording on its own, in the order of the inputs.
     pub recordings: Vec<RecordingFit>,
-    /// White noise of the force channel over the estimation recordings, in N.
+    /// What the white noise of all three channels leaves of a perfect model on the estimation recordings, root
+    /// mean square, in N.
     pub noise_floor_n: f64,
+    /// White noise of the force channel alone, in N.
+    pub force_noise_n: f64,
     /// Independent samples that the estimation recordings are worth.
     pub effective_samples: f64,
 }
@@ -199,6 +202,8 @@ pub struct RecordingFit {
 pub struct FitStatistics {
     /// Root mean square, in N.
     pub rmse_n: f64,
+    /// Root mean square with the samples around reversals, in N.
+    pub rmse_all_n: f64,
     /// Largest absolute value, in N.
     pub max_n: f64,
     /// `1 - Σ residual² / Σ (force - mean)²`.

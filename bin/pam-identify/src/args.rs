@@ -1,0 +1,175 @@
+//! Command line of `pam-identify`.
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+use pam_cli::{ReadArgs, RunArgs};
+use pam_core::artifact::model::Loss;
+use pam_core::force::{Form, Parameter};
+
+/// Identify a force model of a pneumatic muscle from bench recordings.
+///
+/// Reads recordings of pressure, length and force, checks what they are good for, fits eq. 11 (gas, rubber,
+/// strands, friction) by particle swarm and Levenberg–Marquardt, and writes a model with the uncertainty of
+/// every parameter.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    after_help = "Example: fit two recordings, judge the model on a third\n  \
+                  pam-identify run1.csv run2.csv --muscle muscle.toml --holdout run3.csv --out model.json --figure \
+                  fit.svg\n\n\
+                  Exit codes: 0 done and accepted; 1 done and rejected (did not converge, or above --max-rmse-n); 2 \
+                  input or usage."
+)]
+pub(crate) struct Args {
+    /// Recordings to fit; - is standard input.
+    #[arg(value_name = "LOG", required = true)]
+    pub(crate) logs: Vec<PathBuf>,
+
+    /// Muscle file: dimensions as measured, and which of them to fit; see configs/muscle-nominal.toml.
+    #[arg(long, value_name = "M.toml")]
+    pub(crate) muscle: PathBuf,
+
+    /// Model to write (pam-model/1); - is standard output.
+    #[arg(long, value_name = "MODEL.json", required_unless_present = "check")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Recording to hold out and judge the model on; may be repeated.
+    #[arg(long, value_name = "LOG")]
+    pub(crate) holdout: Vec<PathBuf>,
+
+    /// Figure to write (SVG): force, residual and convergence.
+    #[arg(long, value_name = "FIT.svg")]
+    pub(crate) figure: Option<PathBuf>,
+
+    /// Finish with exit code 1 where the RMSE, on the held-out recordings if there are any, is above X newton.
+    #[arg(long, value_name = "X")]
+    pub(crate) max_rmse_n: Option<f64>,
+
+    /// How eq. 11 is written: corrected, or with the paper's misprints.
+    #[arg(long, value_name = "FORM", default_value = "corrected")]
+    pub(crate) form: FormArg,
+
+    /// Also fit the other form of eq. 11 and print both beside one another.
+    #[arg(long)]
+    pub(crate) compare_forms: bool,
+
+    /// What a residual costs: its square, or Huber's loss, which lets outliers count less.
+    #[arg(long, value_name = "LOSS", default_value = "square")]
+    pub(crate) loss: LossArg,
+
+    /// Stop after the swarm: no Levenberg–Marquardt.
+    #[arg(long)]
+    pub(crate) no_polish: bool,
+
+    /// Also show what the same columns reach with weights of any sign and size, and which parameters that
+    /// would make unphysical.
+    #[arg(long)]
+    pub(crate) unbounded: bool,
+
+    /// Fit a parameter on its own that is otherwise one share of a composite: c01 or strand_friction.
+    #[arg(long, value_name = "NAME", value_parser = freed)]
+    pub(crate) free: Vec<Parameter>,
+
+    /// Hold a parameter at a value, as in strand_modulus=3e9 (SI); may be repeated.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = fixed)]
+    pub(crate) fix: Vec<(Parameter, f64)>,
+
+    /// C01/C10 that their fitted sum is shared by.
+    #[arg(long, value_name = "RATIO", default_value_t = pam_identification::search_space::LATEX_RATIO)]
+    pub(crate) bladder_ratio: f64,
+
+    /// By how many millimeters the length turns back before the direction of friction flips; by default five
+    /// times the noise of the length channel.
+    #[arg(long, value_name = "MM")]
+    pub(crate) length_play_mm: Option<f64>,
+
+    /// By how many kPa the pressure turns back, while the length stands still, before the direction of friction
+    /// flips; by default five times the noise of the pressure channel.
+    #[arg(long, value_name = "KPA")]
+    pub(crate) pressure_play_kpa: Option<f64>,
+
+    /// Particles of each swarm.
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    pub(crate) particles: u32,
+
+    /// Moves of each particle.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) iterations: u32,
+
+    /// Swarms, each with its own random streams.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) starts: u32,
+
+    /// Go on where ranges or correlations say that an instrument or the muscle file is wrong.
+    #[arg(long)]
+    pub(crate) accept_implausible: bool,
+
+    #[command(flatten)]
+    pub(crate) read: ReadArgs,
+
+    #[command(flatten)]
+    pub(crate) run: RunArgs,
+}
+
+/// How eq. 11 is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FormArg {
+    /// Rubber resists contraction; strand tension from equilibrium.
+    Corrected,
+    /// With the paper's signs and constants.
+    AsPrinted,
+}
+
+impl FormArg {
+    pub(crate) fn form(self) -> Form {
+        match self {
+            Self::Corrected => Form::Corrected,
+            Self::AsPrinted => Form::AsPrinted,
+        }
+    }
+}
+
+/// What a residual costs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LossArg {
+    /// Its square.
+    Square,
+    /// Huber's loss.
+    Huber,
+}
+
+impl LossArg {
+    pub(crate) fn loss(self) -> Loss {
+        match self {
+            Self::Square => Loss::Square,
+            Self::Huber => Loss::Huber,
+        }
+    }
+}
+
+fn freed(text: &str) -> Result<Parameter, String> {
+    match text {
+        "c01" => Ok(Parameter::C01),
+        "strand_friction" => Ok(Parameter::StrandFriction),
+        _ => Err("expected c01 or strand_friction".to_owned()),
+    }
+}
+
+fn fixed(text: &str) -> Result<(Parameter, f64), String> {
+    let names = || Parameter::ALL.map(Parameter::artifact_name);
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, as in k3=0")?;
+    let name = name.trim();
+    let parameter =
+        Parameter::ALL.into_iter().find(|parameter| parameter.artifact_name() == name).ok_or_else(|| {
+            let near =
+                pam_cli::nearest(name, names()).map(|near| format!(", did you mean {near}?")).unwrap_or_default();
+            format!("no parameter is called \"{name}\"{near}; expected one of {}", names().join(", "))
+        })?;
+    let value: f64 = value.trim().parse().map_err(|_| format!("\"{value}\" is no number"))?;
+    let positive = parameter != Parameter::StrandCompliance || value > 0.0;
+    if !value.is_finite() || !positive {
+        return Err(format!("{name} cannot be {value}"));
+    }
+    Ok((parameter, parameter.from_artifact(value)))
+}

@@ -1,0 +1,10 @@
+//! Identify a force model of a pneumatic muscle from bench recordings.
+
+mod args;
+mod figure;
+mod run;
+mod tables;
+
+fn main() -> std::process::ExitCode {
+    pam_cli::main_with_schema::<args::Args, pam_core::artifact::ModelArtifact>(run::run)
+}

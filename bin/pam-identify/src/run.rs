@@ -1,0 +1,193 @@
+//! Files in, model out.
+
+use std::path::Path;
+
+use anyhow::ensure;
+use pam_cli::{Console, Output, Verdict, commit_all};
+use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
+use pam_core::force::Form;
+use pam_core::muscle::MuscleFile;
+use pam_core::recording::{Recording, read_recording};
+use pam_identification::fit::FitOptions;
+use pam_identification::identify::{Identified, Request, check};
+
+use crate::args::{Args, FormArg};
+use crate::{figure, tables};
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
+    let console = args.run.start()?;
+    if let Some(limit) = args.max_rmse_n {
+        ensure!(limit > 0.0, "--max-rmse-n {limit} is not positive");
+    }
+    for (name, value) in [("--length-play-mm", args.length_play_mm), ("--pressure-play-kpa", args.pressure_play_kpa)] {
+        if let Some(value) = value {
+            ensure!(value >= 0.0 && value.is_finite(), "{name} {value} is negative");
+        }
+    }
+    ensure!(args.bladder_ratio >= 0.0 && args.bladder_ratio.is_finite(), "--bladder-ratio is negative");
+    let from_stdin = args.logs.iter().chain(&args.holdout).filter(|path| path.as_os_str() == "-").count();
+    ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
+    for held_out in &args.holdout {
+        ensure!(
+            !args.logs.contains(held_out),
+            "{}: is fitted and held out as well; hold out a recording that the fit does not see",
+            held_out.display()
+        );
+    }
+    let inputs = || args.logs.iter().chain(&args.holdout).chain([&args.muscle]);
+    let open = |path: &Path| Output::open(path)?.apart_from(inputs());
+    let out = args.out.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
+    let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
+
+    let (muscle, muscle_input) = read_muscle(&args.muscle)?;
+    let estimation = read_all(args, &console, &args.logs)?;
+    let validation = read_all(args, &console, &args.holdout)?;
+    let mut hashes = vec![muscle_input];
+    hashes.extend(estimation.iter().map(|recording| input(recording, InputRole::Estimation)));
+    hashes.extend(validation.iter().map(|recording| input(recording, InputRole::Validation)));
+
+    let checked = check(request(args, args.form.form(), muscle.clone(), estimation, validation))?;
+    console.text(tables::gate(checked.gates()));
+    if args.run.check {
+        console.note("inputs are fine; nothing was fitted (--check)");
+        return Ok(Verdict::Accepted);
+    }
+    let config = checked.config();
+    let found = checked.identify()?;
+    let tool = Tool { name: "pam-identify".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
+    let artifact = found.artifact(tool, hashes, config, args.run.seed);
+
+    console.text(tables::parameters(&artifact));
+    console.text(tables::agreement(&artifact));
+    if let Some(table) = tables::unbounded(&artifact) {
+        console.text(table);
+    }
+    if args.compare_forms {
+        console.text(compare_forms(args, &console, &muscle, &artifact)?);
+    }
+    for warning in &artifact.warnings {
+        console.warn(warning);
+    }
+    write(&console, &found, &artifact, out, figure_out)?;
+    Ok(verdict(args, &console, &artifact))
+}
+
+/// Publishes model and figure together.
+fn write(
+    console: &Console,
+    found: &Identified,
+    artifact: &ModelArtifact,
+    out: Option<Output>,
+    figure_out: Option<Output>,
+) -> anyhow::Result<()> {
+    let mut outputs = Vec::new();
+    let mut written = Vec::new();
+    if let Some(output) = figure_out {
+        written.push(output.path().display().to_string());
+        outputs.push((output, figure::svg(found, artifact)?.into_bytes()));
+    }
+    if let Some(output) = out {
+        let mut json = serde_json::to_vec_pretty(artifact)?;
+        json.push(b'\n');
+        written.insert(0, output.path().display().to_string());
+        outputs.push((output, json));
+    }
+    commit_all(outputs)?;
+    written.retain(|path| path != "-");
+    if !written.is_empty() {
+        console.note(format!("wrote {}", written.join(" and ")));
+    }
+    Ok(())
+}
+
+fn verdict(args: &Args, console: &Console, artifact: &ModelArtifact) -> Verdict {
+    let judged = artifact.fit.validation.unwrap_or(artifact.fit.estimation);
+    if let Some(limit) = args.max_rmse_n.filter(|&limit| judged.rmse_n > limit) {
+        console.warn(format!("rejected: RMSE {:.3} N is above --max-rmse-n {limit}", judged.rmse_n));
+        return Verdict::Rejected;
+    }
+    if !artifact.search.converged && !args.no_polish {
+        console.warn("rejected: the search did not converge; try more --starts or --iterations");
+        return Verdict::Rejected;
+    }
+    Verdict::Accepted
+}
+
+fn request(
+    args: &Args,
+    form: Form,
+    muscle: MuscleFile,
+    estimation: Vec<Recording>,
+    validation: Vec<Recording>,
+) -> Request {
+    Request {
+        estimation,
+        validation,
+        muscle,
+        form,
+        options: FitOptions {
+            n_particles: args.particles as usize,
+            n_iterations: args.iterations as usize,
+            n_starts: args.starts as usize,
+            seed: args.run.seed,
+            polish: !args.no_polish,
+        },
+        loss: args.loss.loss(),
+        free: args.free.clone(),
+        fix: args.fix.clone(),
+        bladder_ratio: args.bladder_ratio,
+        length_play_m: args.length_play_mm.map(|play_mm| play_mm * 1e-3),
+        pressure_play_pa: args.pressure_play_kpa.map(|play_kpa| play_kpa * 1e3),
+        accept_implausible: args.accept_implausible,
+        unbounded: args.unbounded,
+    }
+}
+
+/// Fits the other form of eq. 11 to the same files, for the table alone.
+fn compare_forms(
+    args: &Args,
+    console: &Console,
+    muscle: &MuscleFile,
+    artifact: &ModelArtifact,
+) -> anyhow::Result<String> {
+    ensure!(
+        args.logs.iter().chain(&args.holdout).all(|path| path.as_os_str() != "-"),
+        "--compare-forms reads the recordings twice, and standard input can be read once only; name a file"
+    );
+    let other = if args.form == FormArg::Corrected { Form::AsPrinted } else { Form::Corrected };
+    let quiet = Console::new(true);
+    let estimation = read_all(args, &quiet, &args.logs)?;
+    let validation = read_all(args, &quiet, &args.holdout)?;
+    let checked = check(request(args, other, muscle.clone(), estimation, validation))?;
+    let config = checked.config();
+    let tool = artifact.tool.clone();
+    let second = checked.identify()?.artifact(tool, artifact.inputs.clone(), config, artifact.seed);
+    if console.is_quiet() { Ok(String::new()) } else { Ok(tables::forms(artifact, &second)) }
+}
+
+fn read_muscle(path: &Path) -> anyhow::Result<(MuscleFile, Input)> {
+    let muscle = MuscleFile::read(path)?;
+    // Read anew for the digest alone: a muscle file is a few hundred bytes.
+    let sha256 = sha256_hex(&std::fs::read(path)?);
+    Ok((muscle, Input { path: path.display().to_string(), sha256, role: InputRole::Muscle }))
+}
+
+fn read_all(args: &Args, console: &Console, paths: &[std::path::PathBuf]) -> anyhow::Result<Vec<Recording>> {
+    let options = args.read.options();
+    let mut recordings = Vec::new();
+    for path in paths {
+        let recording = read_recording(path, &options)?;
+        for note in recording.repairs.notes() {
+            console.warn(format!("{}: {note}", recording.path));
+        }
+        if !recording.ignored_columns.is_empty() {
+            console.note(format!("{}: not used: {}", recording.path, recording.ignored_columns.join(", ")));
+        }
+        recordings.push(recording);
+    }
+    Ok(recordings)
+}
+
+fn input(recording: &Recording, role: InputRole) -> Input {
+    Input { path: recording.path.clone(), sha256: recording.sha256.clone(), role }
+}

@@ -1,0 +1,41 @@
+//! Command line of `pam-predict`.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use pam_cli::{ReadArgs, RunArgs};
+
+/// Predict the force of a pneumatic muscle from its model.
+///
+/// Writes the recording with two more columns: force_model_N, and residual_N where a force was recorded
+/// (measured less modelled).
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    after_help = "Example: is the muscle still the one that was identified?\n  \
+                  pam-predict run3.csv --model model.json --out predicted.csv --max-rmse-n 2\n\n\
+                  Exit codes: 0 done and accepted; 1 done and rejected (above --max-rmse-n); 2 input or usage."
+)]
+pub(crate) struct Args {
+    /// Recording of pressure and length, and of force where there is any; - is standard input.
+    #[arg(value_name = "LOG")]
+    pub(crate) log: PathBuf,
+
+    /// Model that pam-identify wrote.
+    #[arg(long, value_name = "MODEL.json")]
+    pub(crate) model: PathBuf,
+
+    /// Recording to write; - is standard output.
+    #[arg(long, value_name = "PREDICTED.csv", required_unless_present = "check")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Finish with exit code 1 where the RMSE is above X newton.
+    #[arg(long, value_name = "X")]
+    pub(crate) max_rmse_n: Option<f64>,
+
+    #[command(flatten)]
+    pub(crate) read: ReadArgs,
+
+    #[command(flatten)]
+    pub(crate) run: RunArgs,
+}
