@@ -7,8 +7,8 @@
 
 use std::collections::VecDeque;
 
-use super::error::RowFault;
 use super::repair::Repairs;
+use super::row_fault::RowFault;
 use super::rows::Channels;
 
 /// Rows that later ones may still prove wrong.

@@ -4,7 +4,13 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
+use super::repair::SkippedRow;
+use super::row_fault::RowFault;
 use super::units::Quantity;
+use super::wording::{
+    counted, counted_rows, listed, missing_remedy, nearest_remedy, shell_quoted, shown_path, shown_place,
+    skipped_clause, too_few_remedy, twice_remedy,
+};
 
 /// Displays as `path:line:column: reason`, which editors turn into a link; trouble with the file as a whole
 /// is `path: reason`.
@@ -26,14 +32,6 @@ pub struct Place {
     pub line: u64,
     /// Field within the line, counted from 1.
     pub column: u64,
-}
-
-fn shown_path(path: &std::path::Path) -> String {
-    if path.as_os_str() == "-" { "standard input".to_owned() } else { clipped(&path.to_string_lossy(), 1000) }
-}
-
-fn shown_place(place: Option<Place>) -> String {
-    place.map_or_else(String::new, |place| format!(":{}:{}", place.line, place.column))
 }
 
 /// What is wrong with a recording.
@@ -133,10 +131,11 @@ pub enum ReadErrorKind {
     },
     /// A quantity without a unit.
     #[error(
-        "column \"{name}\" has no unit; add one of {} to its name, for example {example}, or give --map {example}={}",
+        "column \"{name}\" has no unit; add it to the name ({}) or give it on the command line, \
+         for example --map {}={}",
         quantity.unit_list(),
-        shell_quoted(name),
-        example = quantity.example()
+        quantity.example(),
+        shell_quoted(name)
     )]
     UnitMissing {
         /// Name found.
@@ -145,12 +144,7 @@ pub enum ReadErrorKind {
         quantity: Quantity,
     },
     /// Two columns for one quantity.
-    #[error(
-        "column \"{second}\" gives {quantity} again after \"{first}\"; \
-         keep one of them, for example with --map {example}={}",
-        shell_quoted(first),
-        example = quantity.example()
-    )]
+    #[error("column \"{second}\" gives {quantity} again after \"{first}\"; {}", twice_remedy(first, second))]
     Twice {
         /// The quantity.
         quantity: Quantity,
@@ -229,7 +223,7 @@ pub enum ReadErrorKind {
         fault: RowFault,
     },
     /// Fewer rows than are needed.
-    #[error("{}{}; {}", counted_rows(*found), skipped_clause(*skipped), too_few_remedy(*found, *needed))]
+    #[error("{}{}; {}", counted_rows(*found), skipped_clause(*skipped, first_skipped.as_ref()), too_few_remedy(*found, *needed, *skipped))]
     TooFewRows {
         /// Rows that could be used.
         found: usize,
@@ -237,6 +231,8 @@ pub enum ReadErrorKind {
         needed: usize,
         /// Rows that were skipped.
         skipped: u64,
+        /// The first of them.
+        first_skipped: Option<SkippedRow>,
     },
     /// A clock that stands still.
     #[error("time never varies (it is {time_s} s in every row); check the logger's clock and the column that holds it")]
@@ -270,168 +266,6 @@ pub enum ReadErrorKind {
         /// The value.
         force_n: f64,
     },
-}
-
-/// What is wrong with one row.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RowFault {
-    /// Not as many fields as the header.
-    #[error("{} where the header has {expected}", counted(*found, "field"))]
-    FieldCount {
-        /// Fields in the row.
-        found: usize,
-        /// Fields in the header.
-        expected: usize,
-    },
-    /// Nothing in a field that is used.
-    #[error("column \"{column}\" is empty")]
-    EmptyField {
-        /// Name of the column.
-        column: String,
-    },
-    /// Text in a number.
-    #[error("\"{text}\" in column \"{column}\" is not a number")]
-    NotANumber {
-        /// Name of the column.
-        column: String,
-        /// The text, shortened.
-        text: String,
-    },
-    /// NaN or infinite.
-    #[error("\"{text}\" in column \"{column}\" is not finite")]
-    NotFinite {
-        /// Name of the column.
-        column: String,
-        /// The text, shortened.
-        text: String,
-    },
-    /// A number that no bench measures.
-    #[error("{text} in column \"{column}\" is beyond anything a bench measures")]
-    Absurd {
-        /// Name of the column.
-        column: String,
-        /// The text, shortened.
-        text: String,
-    },
-    /// A quote that is not closed.
-    #[error("a quote is not closed on its line")]
-    OpenQuote,
-    /// A line of absurd length.
-    #[error("the line is longer than {limit} bytes")]
-    TooLong {
-        /// Longest line that is read, in bytes.
-        limit: usize,
-    },
-    /// A stamp before the one above.
-    #[error("the clock runs back from {before_s} s to {time_s} s")]
-    ClockRunsBack {
-        /// Stamp of the row above, in s.
-        before_s: f64,
-        /// Stamp of this row, in s.
-        time_s: f64,
-    },
-    /// A stamp after which the clock runs back to where it was.
-    #[error("the clock jumps ahead to {time_s} s and back again")]
-    ClockJumpsAhead {
-        /// Stamp of this row, in s.
-        time_s: f64,
-    },
-}
-
-impl RowFault {
-    /// What to do about it.
-    pub fn remedy(&self) -> &'static str {
-        match self {
-            Self::ClockRunsBack { .. } => {
-                "cut the file there if the logger started anew, or drop such rows with --skip-bad-rows"
-            }
-            Self::FieldCount { found, expected } if *found == 2 * expected => {
-                "decimal commas need semicolons or tabs between columns; drop such rows with --skip-bad-rows"
-            }
-            _ => "correct the row, or drop such rows with --skip-bad-rows",
-        }
-    }
-}
-
-fn counted(n: usize, noun: &str) -> String {
-    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
-}
-
-fn counted_rows(found: usize) -> String {
-    match found {
-        0 => "there are no rows".to_owned(),
-        1 => "there is only one row".to_owned(),
-        _ => format!("there are only {found} rows"),
-    }
-}
-
-fn skipped_clause(skipped: u64) -> String {
-    if skipped == 0 { String::new() } else { format!(" that can be used ({skipped} skipped)") }
-}
-
-fn too_few_remedy(found: usize, needed: usize) -> String {
-    if found == 0 {
-        "record again, or check that the logger closed the file".to_owned()
-    } else {
-        format!("at least {needed} are needed: record for longer")
-    }
-}
-
-/// What to do about a missing quantity.
-fn missing_remedy(quantity: Quantity, hint: Option<&str>) -> String {
-    let example = quantity.example();
-    match (hint, quantity) {
-        (Some(hint), _) => format!("name a column {example} in the header or, as it seems to fit, give {hint}"),
-        (None, Quantity::Time) => {
-            format!("name a column {example} in the header or point to one with --map {example}=COLUMN")
-        }
-        (None, _) => format!(
-            "name a column {example} in the header, point to one with --map {example}=COLUMN, \
-             or give a constant with --fixed {example}=VALUE"
-        ),
-    }
-}
-
-fn nearest_remedy(nearest: Option<&str>, columns: &[String]) -> String {
-    match nearest {
-        Some(nearest) => format!("did you mean \"{nearest}\"?"),
-        None => format!("it has {}", listed(columns)),
-    }
-}
-
-/// Names for a message, the first few.
-fn listed(columns: &[String]) -> String {
-    const SHOWN: usize = 8;
-    if columns.is_empty() {
-        return "no named column".to_owned();
-    }
-    let names: Vec<&str> = columns.iter().take(SHOWN).map(String::as_str).collect();
-    let more = columns.len().saturating_sub(SHOWN);
-    if more == 0 { names.join(", ") } else { format!("{} and {more} more", names.join(", ")) }
-}
-
-/// `name` as a word on a command line.
-pub(crate) fn shell_quoted(name: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
-    if !name.is_empty() && name.chars().all(plain) { name.to_owned() } else { format!("\"{name}\"") }
-}
-
-/// `text` on one line, at most `limit` characters.
-pub(crate) fn clipped(text: &str, limit: usize) -> String {
-    let mut shown = String::new();
-    for (index, character) in text.chars().enumerate() {
-        if index == limit {
-            shown.push('…');
-            break;
-        }
-        if character.is_control() || matches!(character, '\u{2028}' | '\u{2029}') {
-            shown.extend(character.escape_debug());
-        } else {
-            shown.push(character);
-        }
-    }
-    shown
 }
 
 impl fmt::Display for Place {

@@ -1,10 +1,11 @@
 //! From names to channels: which field of a row feeds which quantity, and what the options change about it.
 
-use super::error::{ReadErrorKind, clipped, shell_quoted};
+use super::error::ReadErrorKind;
 use super::options::Target;
 use super::read::ReadOptions;
 use super::samples::MAX_COLUMNS;
 use super::units::{Name, Quantity, Unit};
+use super::wording::{clipped, shell_quoted};
 
 /// Longest name in a message or an artifact, in characters.
 const NAME_SHOWN: usize = 80;

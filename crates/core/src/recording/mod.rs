@@ -4,16 +4,23 @@
 //! live in [`Samples`], in chunks, so that a recording may be larger than memory; everything that walks
 //! over it takes one chunk at a time. A gap in time splits a recording into [segments](Recording::segments):
 //! no filter, derivative or memory runs across one.
+//!
+//! In the order in which bytes pass: `source` opens, decompresses and hashes; `lines` cuts; `sniff` finds the
+//! separator; `opening` and `header` give the columns a meaning, with what `options` says; `rows` reads numbers;
+//! `clock` drops rows that contradict their neighbors; `stamps` spreads equal stamps and finds gaps; `samples` keeps.
 
+mod body;
 mod clock;
 mod error;
 mod expression;
 mod fields;
 mod header;
 mod lines;
+mod opening;
 mod options;
 mod read;
 mod repair;
+mod row_fault;
 mod rows;
 mod samples;
 mod sniff;
@@ -21,11 +28,13 @@ mod source;
 mod spill;
 mod stamps;
 mod units;
+mod wording;
 
-pub use error::{Place, ReadError, ReadErrorKind, RowFault};
+pub use error::{Place, ReadError, ReadErrorKind};
 pub use options::{Calibration, ColumnMap, Columns, ExpressionFault, FixedChannel, OptionSyntaxError};
 pub use read::{ReadOptions, read_recording};
 pub use repair::{Repairs, SkippedRow};
+pub use row_fault::RowFault;
 pub use samples::{CHUNK_ROWS, Chunk, MEMORY_ROWS, Samples};
 pub use units::Quantity;
 

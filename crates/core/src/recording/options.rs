@@ -149,7 +149,7 @@ pub enum ExpressionFault {
         second: String,
     },
     /// A column times itself, or below a fraction bar.
-    #[error("the column is multiplied by itself or divided by")]
+    #[error("the column multiplies itself or stands below a fraction bar")]
     NotLinear,
     /// Nothing left of the column.
     #[error("the column has no weight")]

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::RowFault;
+use super::row_fault::RowFault;
 
 /// Skipped rows that are remembered one by one.
 const REMEMBERED: usize = 5;
@@ -72,8 +72,9 @@ impl Repairs {
         let mut notes = Vec::new();
         if self.repeated_stamps_spread > 0 {
             let rows = counted(self.repeated_stamps_spread, "row");
+            let were = if self.repeated_stamps_spread == 1 { "was" } else { "were" };
             notes.push(format!(
-                "{rows} had the time stamp of the row above and were spread evenly up to the next stamp"
+                "{rows} had the time stamp of the row above and {were} spread evenly up to the next stamp"
             ));
         }
         if self.rows_skipped > 0 {

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use super::error::{RowFault, clipped};
 use super::fields::{NumberFault, is_blank, is_comment, number, split, strip_line_end, text};
 use super::header::{Plan, Source};
+use super::row_fault::RowFault;
 use super::samples::MAX_COLUMNS;
+use super::wording::clipped;
 
 /// Characters of a field that a message shows.
 const TEXT_SHOWN: usize = 40;

@@ -92,7 +92,9 @@ pub(crate) fn layout(start: &[u8], n_columns: Option<usize>) -> Layout {
 /// Fields of a row; an empty one at its end is the mark of loggers that end a row with a separator.
 fn count(row: &[u8], separator: u8) -> usize {
     let mut fields = Vec::new();
-    let n_fields = split(row, separator, SAMPLE_FIELDS, &mut fields).unwrap_or(1);
+    // A quote left open is for the reader to refuse.
+    let n_plain = || row.iter().filter(|byte| **byte == separator).count() + 1;
+    let n_fields = split(row, separator, SAMPLE_FIELDS, &mut fields).unwrap_or_else(|_| n_plain());
     n_fields - usize::from(n_fields > 1 && row.trim_ascii_end().last().is_none_or(|byte| *byte == separator))
 }
 

@@ -1,0 +1,109 @@
+//! The first line that is neither blank nor a comment: a header, or a row whose columns are named elsewhere.
+
+use super::error::{Place, ReadErrorKind};
+use super::fields::{number, split, text};
+use super::header::{self, Plan};
+use super::read::{ReadOptions, Refusal, whole};
+use super::sniff::Layout;
+use super::units::Name;
+
+/// What the line turned out to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Opened {
+    /// A header, or nothing that counts.
+    OnHeader,
+    /// A row.
+    OnRow,
+}
+
+/// A comment and where it stands.
+#[derive(Debug)]
+pub(super) struct Comment {
+    pub(super) line: u64,
+    pub(super) text: Vec<u8>,
+}
+
+/// Names of the columns, and the line that gave them.
+struct Named {
+    names: Vec<Option<String>>,
+    line: Option<u64>,
+    opened: Opened,
+}
+
+/// How to read the rows of a file whose first line is `line`; `comment` is the last one before it.
+pub(super) fn plan(
+    line: &[u8],
+    number: u64,
+    comment: Option<&Comment>,
+    layout: Layout,
+    options: &ReadOptions,
+) -> Result<(Plan, Opened), Refusal> {
+    let named = names(line, number, comment, layout, options)?;
+    let plan = header::plan(&named.names, options).map_err(|fault| {
+        let place = named.line.zip(fault.field).map(|(line, field)| Place { line, column: field as u64 + 1 });
+        (place, fault.kind)
+    })?;
+    Ok((plan, named.opened))
+}
+
+fn names(
+    line: &[u8],
+    line_number: u64,
+    comment: Option<&Comment>,
+    layout: Layout,
+    options: &ReadOptions,
+) -> Result<Named, Refusal> {
+    let at = |field: usize| Some(Place { line: line_number, column: field as u64 + 1 });
+    if layout.space_separated {
+        return Err((at(0), ReadErrorKind::SpaceSeparated));
+    }
+    let mut ranges = Vec::new();
+    split(line, layout.separator, usize::MAX, &mut ranges)
+        .map_err(|quote| (at(quote.field), ReadErrorKind::OpenQuote))?;
+    let fields: Vec<&[u8]> = ranges.into_iter().map(|range| &line[range]).collect();
+    let n_numbers = fields.iter().filter(|field| number(field, layout.separator != b',').is_ok()).count();
+    let n_filled = fields.iter().filter(|field| !field.is_empty()).count();
+    if let Some(columns) = &options.columns {
+        if n_numbers == 0 && n_filled > 1 && !options.skip_bad_rows {
+            return Err((at(0), ReadErrorKind::HeaderPresent));
+        }
+        let (given, found) = (columns.names.len(), layout.n_fields);
+        if given != found {
+            return Err(whole(ReadErrorKind::ColumnsCount { given, found }));
+        }
+        return Ok(Named { names: columns.names.clone(), line: None, opened: Opened::OnRow });
+    }
+    if n_numbers == 0 || 2 * n_numbers < n_filled {
+        return Ok(Named { names: column_names(&fields), line: Some(line_number), opened: Opened::OnHeader });
+    }
+    if let Some(comment) = comment
+        && let Some(names) = names_in_comment(&comment.text, layout)
+    {
+        return Ok(Named { names, line: Some(comment.line), opened: Opened::OnRow });
+    }
+    Err((at(0), ReadErrorKind::NoHeader { example: example_columns(layout.n_fields) }))
+}
+
+/// Fields of a header. A separator at its end names no column.
+fn column_names(fields: &[&[u8]]) -> Vec<Option<String>> {
+    let n_named = fields.iter().rposition(|field| !field.is_empty()).map_or(1, |last| last + 1);
+    fields.iter().take(n_named).map(|field| Some(text(field).into_owned())).collect()
+}
+
+/// A header behind `#`, as numpy writes it: as many names as the rows have fields, one of them a quantity.
+fn names_in_comment(comment: &[u8], layout: Layout) -> Option<Vec<Option<String>>> {
+    let line = comment.trim_ascii_start().strip_prefix(b"#")?;
+    let mut ranges = Vec::new();
+    split(line, layout.separator, layout.n_fields + 1, &mut ranges).ok()?;
+    let fields: Vec<&[u8]> = ranges.into_iter().map(|range| &line[range]).collect();
+    let names = column_names(&fields);
+    let is_channel = |name: &Option<String>| matches!(name.as_deref().map(Name::read), Some(Name::Channel(..)));
+    (names.len() == layout.n_fields && names.iter().any(is_channel)).then_some(names)
+}
+
+/// Names for as many columns as a file has.
+fn example_columns(n_fields: usize) -> String {
+    let names = ["time_s", "pressure_kPa", "length_mm", "force_N"];
+    let example: Vec<&str> = (0..n_fields.clamp(1, 12)).map(|index| names.get(index).copied().unwrap_or("-")).collect();
+    example.join(",")
+}
