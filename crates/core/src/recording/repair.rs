@@ -42,21 +42,6 @@ impl Repairs {
         *self == Self::default()
     }
 
-    /// Gaps in time that split the recording.
-    pub fn n_gaps(&self) -> u64 {
-        self.gaps
-    }
-
-    /// Rows that had the stamp of the row above.
-    pub fn n_repeated_stamps(&self) -> u64 {
-        self.repeated_stamps_spread
-    }
-
-    /// Rows that were dropped.
-    pub fn n_skipped_rows(&self) -> u64 {
-        self.rows_skipped
-    }
-
     /// Counts a row that is dropped.
     pub(crate) fn skip(&mut self, line: u64, fault: &RowFault) {
         self.rows_skipped += 1;

@@ -1,5 +1,7 @@
 //! The reader of recordings from outside: what it understands, repairs and refuses, with every message.
 
+#![expect(clippy::unwrap_used, reason = "a helper of a test may panic as the test may")]
+
 mod never_panics;
 mod options;
 mod real_files;
