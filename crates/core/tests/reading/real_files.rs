@@ -33,7 +33,7 @@ fn isometric_recordings_are_whole() {
         let recording = read_recording(&path, &ReadOptions::default()).unwrap();
         assert_eq!(recording.samples.n_rows(), 15_000, "{}", path.display());
         assert_eq!(recording.segments, vec![0..15_000], "{}", path.display());
-        // Three rows at 540 Hz share a millisecond near the start of each.
+        // One pair of rows shares a millisecond in each file.
         assert_eq!(recording.repairs.repeated_stamps_spread, 1, "{}", path.display());
         assert_eq!(recording.ignored_columns, ["state_1inflate_2deflate"], "{}", path.display());
         assert!(stamps_s(&recording).windows(2).all(|pair| pair[1] > pair[0]), "{}", path.display());
