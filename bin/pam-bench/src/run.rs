@@ -5,6 +5,7 @@ use std::io::Write as _;
 use anyhow::{Context as _, Result, anyhow};
 use pam_cli::{Console, Output, OutputError, Verdict, finish_all, nearest};
 use pam_core::muscle::MuscleFile;
+use pam_virtual_bench::bench::BenchError;
 use pam_virtual_bench::parameters::ParameterError;
 use pam_virtual_bench::protocol::{ALL, ProtocolError};
 use pam_virtual_bench::sensors::Clock;
@@ -97,7 +98,12 @@ fn bench(args: &Args, file: MuscleFile, protocol: Protocol) -> Result<Bench> {
         args::Clock::Ideal => Clock::Ideal,
         args::Clock::Ms => Clock::Milliseconds,
     };
-    Ok(bench.with_sensors(sensors)?.at_rate(args.rate)?)
+    let run = bench.with_sensors(sensors).and_then(|bench| bench.at_rate(args.rate));
+    run.map_err(|error| match &error {
+        BenchError::Noise { .. } => anyhow!("--noise {}: {error}", args.noise),
+        BenchError::Correlation { .. } => anyhow!("--force-noise-correlation: {error}"),
+        BenchError::Rate { .. } | BenchError::Rows { .. } => anyhow!("--rate: {error}"),
+    })
 }
 
 /// One line: what will be recorded.

@@ -121,8 +121,8 @@ fn a_misspelt_parameter_is_refused_with_the_nearest_name() {
 #[test]
 fn values_out_of_range_are_refused_with_the_range() {
     for (arguments, place) in [
-        (["--noise", "-1"], "noise of the pressure channel is -0.5"),
-        (["--rate", "0"], "sampling rate 0 Hz"),
+        (["--noise", "-1"], "--noise -1: noise of the pressure channel is -0.5"),
+        (["--rate", "0"], "--rate: sampling rate 0 Hz"),
         (["--duration-scale", "0"], "--duration-scale: duration scale 0"),
         (["--highest-pressure", "9000"], "--highest-pressure: highest pressure 9000000 Pa"),
         (["--set", "k1"], "expected NAME=VALUE, as in k1=0.9"),

@@ -15,7 +15,7 @@
 //! - [`path`]: where the rig takes pressure and length; [`reach`]: where the muscle lets it;
 //! - [`protocol`]: the protocols by name;
 //! - [`sensors`]: noise, quantization, clock;
-//! - [`bench`]: muscle, protocol and sensors together make a [`recording`].
+//! - [`mod@bench`]: muscle, protocol and sensors together make a [`recording`].
 
 pub mod bench;
 mod dual;

@@ -6,7 +6,8 @@
 //!
 //! # Design
 //! Position in the chain says where a mechanism acts: one that stands before [`PassiveTension`] changes
-//! the pressure or the length that reaches the muscle, one that stands after it changes the tension. So one trait with one function serves all of them.
+//! the pressure or the length that reaches the muscle, one that stands after it changes the tension. So one
+//! trait with one function serves all of them.
 
 use crate::friction::BraidFriction;
 use crate::true_muscle::{Tension, TrueMuscle};

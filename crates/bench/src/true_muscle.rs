@@ -5,8 +5,9 @@
 //! ```
 //!
 //! The energies `Π₀` (gas, strands of fixed length), `Π` (gas and stretched strands) and `U` (bladder)
-//! are written down in the `energy` module of this crate, the friction `F_f` in [`friction`](crate::friction). `k₁` and `k₂` are what end
-//! caps and strand thickness leave of the ideal braid; `k₃` is a constant force.
+//! are written down in the `energy` module of this crate, the friction `F_f` in
+//! [`friction`](crate::friction). `k₁` and `k₂` are what end caps and strand thickness leave of the ideal
+//! braid; `k₃` is a constant force.
 
 use pam_core::muscle::Muscle;
 

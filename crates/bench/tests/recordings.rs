@@ -277,8 +277,7 @@ fn what_cannot_be_run_is_refused_by_name() {
 }
 
 #[test]
-fn the_fit_could_not_have_drawn_the_friction_from_the_length_alone() {
-    // Friction jumps by `2 f' p π D L` at the reversal of a triangle, between two rows.
+fn the_force_jumps_by_twice_the_friction_between_two_rows_at_a_reversal() {
     let muscle = TrueMuscle::nominal();
     let recording = bench("rate-ladder", &Options { duration_scale: 0.02, ..SHORT }).record(1);
     let jumps: Vec<usize> = (1..recording.n_samples())

@@ -1,6 +1,6 @@
 //! The protocols of the bench by name.
 //!
-//! Each is one function from a [`Setting`] to takes; the table [`ALL`] is the list that a user sees.
+//! Each is one function that makes takes for a muscle; the table [`ALL`] is the list that a user sees.
 
 mod isobaric;
 mod isometric;
@@ -162,8 +162,8 @@ pub enum ProtocolError {
     },
     /// A braid that gives way under the pressure.
     #[error(
-        "the strands of this braid would stretch by {percent:.0} % at {highest_pressure_pa} Pa, more than {MOST_PERCENT} %; check \
-         number, diameter and modulus of the strands, or lower the pressure"
+        "the strands of this braid would stretch by {percent:.0} % at {highest_pressure_pa} Pa, more than \
+         {MOST_PERCENT} %; check number, diameter and modulus of the strands, or lower the pressure"
     )]
     SoftBraid {
         /// Stretch of the strands at rest length, in percent.
@@ -173,8 +173,8 @@ pub enum ProtocolError {
     },
     /// The muscle is slack wherever the protocol would take it.
     #[error(
-        "protocol \"{protocol}\" finds this muscle slack: it never pulls {lowest_tension_n} N at up to {highest_pressure_pa} Pa; \
-         raise the pressure or lower the tension asked for"
+        "protocol \"{protocol}\" finds this muscle slack: it never pulls {lowest_tension_n} N at up to \
+         {highest_pressure_pa} Pa; raise the pressure or lower the tension asked for"
     )]
     Slack {
         /// Name of the protocol.
