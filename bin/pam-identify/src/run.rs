@@ -175,15 +175,29 @@ fn read_muscle(path: &Path) -> anyhow::Result<(MuscleFile, Input)> {
 fn read_all(args: &Args, console: &Console, paths: &[std::path::PathBuf]) -> anyhow::Result<Vec<Recording>> {
     let options = args.read.options();
     let mut recordings = Vec::new();
+    let mut notes: Vec<(String, Vec<String>)> = Vec::new();
     for path in paths {
         let recording = read_recording(path, &options)?;
-        for note in recording.repairs.notes() {
-            console.warn(format!("{}: {note}", recording.path));
-        }
+        let mut said = recording.repairs.notes();
         if !recording.ignored_columns.is_empty() {
-            console.note(format!("{}: not used: {}", recording.path, recording.ignored_columns.join(", ")));
+            said.push(format!("not used: {}", recording.ignored_columns.join(", ")));
+        }
+        for words in said {
+            match notes.iter_mut().find(|(known, _)| *known == words) {
+                Some((_, paths)) => paths.push(recording.path.clone()),
+                None => notes.push((words, vec![recording.path.clone()])),
+            }
         }
         recordings.push(recording);
+    }
+    // Files of one logger need the same repairs: say so once.
+    for (words, paths) in notes {
+        let others = match paths.len() {
+            1 => String::new(),
+            2 => " and another".to_owned(),
+            n => format!(" and {} others", n - 1),
+        };
+        console.note(format!("{}{others}: {words}", paths[0]));
     }
     Ok(recordings)
 }

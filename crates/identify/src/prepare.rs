@@ -44,8 +44,7 @@ pub fn gate(recordings: Vec<Recording>) -> Result<Vec<Gated>, IdentifyError> {
 }
 
 /// Thresholds of the direction that fit all of `gates`: five times the worst noise, and never less than 1e-4 of
-/// the rest length or 2 % of the highest pressure. A gauge beside a valve rings by some percent at every pulse,
-/// which the braid inside the muscle does not follow.
+/// the rest length or 1e-3 of the highest pressure, below which a flip means nothing.
 pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
     let worst = |name: &str| {
         gates
@@ -61,7 +60,7 @@ pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
         .fold(0.0, f64::max);
     Thresholds {
         length_m: worst("length").max(1e-4 * muscle.rest_length_m),
-        pressure_pa: worst("pressure").max(0.02 * highest_pa),
+        pressure_pa: worst("pressure").max(1e-3 * highest_pa),
     }
 }
 

@@ -157,24 +157,44 @@ pub fn composites(found: &Identified) -> Vec<CompositeEntry> {
 /// What a person should know before using the model.
 pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<String> {
     let mut warnings = Vec::new();
-    for prepared in found.estimation.iter().chain(&found.validation) {
-        for channel in &prepared.quality.channels {
-            for (share, end, value) in [
-                (channel.clipped_low_share, "low", channel.lowest),
-                (channel.clipped_high_share, "high", channel.highest),
-            ] {
-                if share > 0.005 {
-                    warnings.push(format!(
-                        "{}: {} is stuck at its {end} end ({value:.4} {}) in {:.1} % of the samples: the sensor or its \
-                         converter is out of range there",
-                        prepared.recording.path,
-                        channel.name,
-                        channel.unit,
-                        100.0 * share
-                    ));
-                }
+    let prepared = || found.estimation.iter().chain(&found.validation);
+    for (name, unit) in [("pressure", "Pa"), ("length", "m"), ("force", "N")] {
+        for end in ["low", "high"] {
+            let stuck: Vec<(&str, f64, f64)> = prepared()
+                .filter_map(|prepared| {
+                    let channel = prepared.quality.channel(name)?;
+                    let (share, value) = if end == "low" {
+                        (channel.clipped_low_share, channel.lowest)
+                    } else {
+                        (channel.clipped_high_share, channel.highest)
+                    };
+                    (share > 0.005).then_some((prepared.recording.path.as_str(), share, value))
+                })
+                .collect();
+            if let Some((path, share, value)) = stuck.iter().copied().max_by(|left, right| left.1.total_cmp(&right.1)) {
+                warnings.push(format!(
+                    "{path}{}: {name} is stuck at its {end} end ({value:.4} {unit}) in up to {:.1} % of the samples: the \
+                     sensor or its converter is out of range there",
+                    and_others(stuck.len() - 1),
+                    100.0 * share
+                ));
             }
         }
+    }
+    let doubtful: Vec<(&str, f64)> = prepared()
+        .map(|prepared| {
+            let n_rows = prepared.recording.samples.n_rows().max(1) as f64;
+            (prepared.recording.path.as_str(), prepared.direction.n_unsettled() as f64 / n_rows)
+        })
+        .filter(|(_, share)| *share > 0.1)
+        .collect();
+    if let Some((path, share)) = doubtful.iter().copied().max_by(|left, right| left.1.total_cmp(&right.1)) {
+        warnings.push(format!(
+            "{path}{}: up to {:.0} % of the samples lie around reversals and are not counted; where a gauge rings at every \
+             pulse of the valve, raise --pressure-play-kpa above the ringing",
+            and_others(doubtful.len() - 1),
+            100.0 * share
+        ));
     }
     for lag in lags {
         let (milliseconds, order) =
@@ -234,6 +254,15 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
         warnings.push("rest_radius is fitted, so k1 is held: the gas term holds their product alone".to_owned());
     }
     warnings
+}
+
+/// How many more recordings a warning holds for.
+fn and_others(n: usize) -> String {
+    match n {
+        0 => String::new(),
+        1 => " and another".to_owned(),
+        n => format!(" and {n} others"),
+    }
 }
 
 /// "above" or "below" as a reader of the artifact sees it: the modulus is the inverse of what is fitted.

@@ -89,7 +89,7 @@ pub fn quantization_step(values: &[f64]) -> Option<f64> {
     }
     // Printed digits round each value, so that the smallest gap may be off by a few per mille.
     let multiples =
-        gaps.iter().filter(|&&gap| (gap / step - (gap / step).round()).abs() < 0.05 * (gap / step).max(1.0).min(4.0));
+        gaps.iter().filter(|&&gap| (gap / step - (gap / step).round()).abs() < 0.05 * (gap / step).clamp(1.0, 4.0));
     let few_values = span / step < 70_000.0;
     (few_values && multiples.count() as f64 > 0.98 * gaps.len() as f64).then_some(step)
 }

@@ -1,0 +1,145 @@
+//! Known parameters come back from the virtual bench within their stated uncertainty.
+//!
+//! The bench integrates ten times finer than it logs and computes forces from stored energies, so that
+//! nothing but the physics is shared with the fit.
+
+use pam_core::artifact::Tool;
+use pam_core::artifact::model::{Loss, ModelArtifact};
+use pam_core::force::Form;
+use pam_core::muscle::MuscleFile;
+use pam_core::recording::{Recording, Repairs, Samples};
+use pam_identification::fit::FitOptions;
+use pam_identification::identify::{Request, check};
+use pam_identification::search_space::LATEX_RATIO;
+use pam_virtual_bench::{Bench, Options, Parameters, Sensors, TrueMuscle, command};
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+
+/// Runs at each of two noise levels.
+const RUNS: u64 = 100;
+
+fn random_muscle(seed: u64) -> TrueMuscle {
+    let mut generator = rand_pcg::Pcg64::seed_from_u64(seed);
+    let mut draw = |low: f64, high: f64| generator.random_range(low..high);
+    let nominal = TrueMuscle::nominal();
+    let bladder_pa = draw(120e3, 350e3);
+    let parameters = Parameters {
+        k1: draw(0.78, 1.02),
+        k2: draw(1.0, 1.22),
+        k3_n: draw(-4.0, 4.0),
+        c10_pa: bladder_pa / (1.0 + LATEX_RATIO),
+        c01_pa: bladder_pa * LATEX_RATIO / (1.0 + LATEX_RATIO),
+        strand_modulus_pa: draw(2e9, 6e9),
+        rubber_friction: draw(0.7e-3, 3e-3),
+        strand_friction: 0.0,
+    };
+    TrueMuscle::new(nominal.muscle().clone(), nominal.contact_modulus_pa(), parameters)
+}
+
+fn record(muscle: &TrueMuscle, protocol: &str, duration_scale: f64, seed: u64, noise: f64) -> Recording {
+    let options = Options { duration_scale, seed, ..Options::default() };
+    let command = command(protocol, muscle, &options).unwrap();
+    let bench = Bench::new(muscle.clone(), command).at_rate(100.0).unwrap();
+    let sensors = bench.sensors().clone().with_noise_times(noise);
+    let log = bench.with_sensors(sensors).unwrap().record(seed);
+    let period_s = log.time_s[1] - log.time_s[0];
+    let mut segments = Vec::new();
+    let mut start = 0;
+    for row in 1..log.time_s.len() {
+        if log.time_s[row] - log.time_s[row - 1] > 10.0 * period_s {
+            segments.push(start..row);
+            start = row;
+        }
+    }
+    segments.push(start..log.time_s.len());
+    Recording {
+        path: protocol.to_owned(),
+        sha256: String::new(),
+        samples: Samples::from_columns(&log.time_s, &log.pressure_pa, &log.length_m, &log.force_n),
+        segments,
+        repairs: Repairs::default(),
+        ignored_columns: Vec::new(),
+    }
+}
+
+fn identify(muscle: &TrueMuscle, seed: u64, noise: f64) -> ModelArtifact {
+    // Short, but with loops that a logger of 100 Hz still resolves.
+    let protocols = [("isobaric-triangles", 0.12), ("isometric-ramps", 0.12), ("minor-loops", 0.7)];
+    let estimation = protocols
+        .iter()
+        .zip(0..)
+        .map(|(&(name, scale), n)| record(muscle, name, scale, 10 * seed + n, noise))
+        .collect();
+    let checked = check(Request {
+        estimation,
+        validation: Vec::new(),
+        muscle: MuscleFile {
+            muscle: muscle.muscle().clone(),
+            fit: Vec::new(),
+            strand_modulus_pa: muscle.contact_modulus_pa(),
+        },
+        form: Form::Corrected,
+        options: FitOptions { n_starts: 1, seed, ..FitOptions::default() },
+        loss: Loss::Square,
+        free: Vec::new(),
+        fix: Vec::new(),
+        bladder_ratio: LATEX_RATIO,
+        length_play_m: None,
+        pressure_play_pa: None,
+        accept_implausible: false,
+        unbounded: false,
+    })
+    .unwrap();
+    let config = checked.config();
+    let tool = Tool { name: "test".to_owned(), version: String::new() };
+    checked.identify().unwrap().artifact(tool, Vec::new(), config, seed)
+}
+
+/// Distance of each identifiable parameter or composite from the truth, in standard errors.
+fn distances(artifact: &ModelArtifact, truth: &Parameters) -> Vec<(&'static str, f64)> {
+    let entry = |name: &str| {
+        let entry = artifact.parameters.iter().find(|entry| entry.name == name).unwrap();
+        (entry.value, entry.stderr)
+    };
+    let composite = |name: &str| {
+        let entry = artifact.composites.iter().find(|entry| entry.name.starts_with(name)).unwrap();
+        (entry.value, entry.stderr)
+    };
+    let distance = |(value, stderr): (f64, Option<f64>), truth: f64| (value - truth) / stderr.unwrap();
+    vec![
+        ("k1", distance(entry("k1"), truth.k1)),
+        ("k2", distance(entry("k2"), truth.k2)),
+        ("k3", distance(entry("k3"), truth.k3_n)),
+        ("c10 + c01", distance(composite("c10 + c01"), truth.c10_pa + truth.c01_pa)),
+        ("strand_modulus", distance(entry("strand_modulus"), truth.strand_modulus_pa)),
+        ("rubber_friction", distance(composite("rubber_friction"), truth.rubber_friction)),
+    ]
+}
+
+#[test]
+fn known_parameters_come_back_within_three_standard_errors() {
+    for noise in [0.5, 1.0] {
+        let runs: Vec<(Vec<(&'static str, f64)>, f64)> = (1..=RUNS)
+            .into_par_iter()
+            .map(|seed| {
+                let muscle = random_muscle(seed);
+                let artifact = identify(&muscle, seed, noise);
+                let ratio = artifact.fit.estimation.rmse_n / artifact.fit.noise_floor_n;
+                (distances(&artifact, muscle.parameters()), ratio)
+            })
+            .collect();
+        for index in 0..runs[0].0.len() {
+            let name = runs[0].0[index].0;
+            let values: Vec<f64> = runs.iter().map(|(distances, _)| distances[index].1).collect();
+            let within = values.iter().filter(|distance| distance.abs() <= 3.0).count();
+            let n = values.len() as f64;
+            let mean = values.iter().sum::<f64>() / n;
+            let spread = (values.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / n).sqrt();
+            println!("noise x {noise}, {name}: within 3 s.e. {within} of {RUNS}; mean {mean:.2}, spread {spread:.2}");
+            assert!(within as f64 >= 0.97 * n, "{name} at noise x {noise}: {within} of {RUNS}");
+        }
+        let worst = runs.iter().map(|(_, ratio)| *ratio).fold(0.0, f64::max);
+        println!("noise x {noise}: RMSE at most {worst:.3} times the noise floor");
+        assert!(worst <= 1.05, "RMSE {worst} times the noise floor");
+    }
+}
