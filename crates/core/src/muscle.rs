@@ -75,21 +75,55 @@ impl Muscle {
         1.0 - 1.0 / (3.0_f64.sqrt() * self.braid_angle_rad.cos())
     }
 
-    /// `D(L)`, in m; NaN where the strands are straight, that is at `L ≥ b_s`.
+    /// `D(L)`, in m; see [`Kinematics::diameter_m`].
     pub fn diameter_m(&self, length_m: f64) -> f64 {
-        let strand_m = self.strand_length_m();
-        (strand_m * strand_m - length_m * length_m).sqrt() / (PI * self.turns())
+        Kinematics::of(self).diameter_m(length_m)
     }
 
     /// `dD/dL`, dimensionless and negative.
     pub fn diameter_slope(&self, length_m: f64) -> f64 {
-        let turns = self.turns();
-        -length_m / (PI * PI * turns * turns * self.diameter_m(length_m))
+        let kinematics = Kinematics::of(self);
+        kinematics.diameter_slope(length_m, kinematics.diameter_m(length_m))
     }
 
     /// Cross-section of all strands together, `N π d_s² / 4`, in m².
     pub fn braid_section_m2(&self) -> f64 {
         self.strand_count * PI * self.strand_diameter_m * self.strand_diameter_m / 4.0
+    }
+}
+
+/// Kinematics of the braid with its constants worked out, for walks over many samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Kinematics {
+    rest_length_m: f64,
+    strand_length_square_m2: f64,
+    /// `π n`.
+    pi_turns: f64,
+}
+
+impl Kinematics {
+    /// Those of `muscle`.
+    pub fn of(muscle: &Muscle) -> Self {
+        Self {
+            rest_length_m: muscle.rest_length_m,
+            strand_length_square_m2: muscle.strand_length_m().powi(2),
+            pi_turns: PI * muscle.turns(),
+        }
+    }
+
+    /// `ε = (L₀ - L) / L₀`.
+    pub fn contraction_ratio(&self, length_m: f64) -> f64 {
+        (self.rest_length_m - length_m) / self.rest_length_m
+    }
+
+    /// `D(L)`, in m; NaN where the strands are straight, that is at `L ≥ b_s`.
+    pub fn diameter_m(&self, length_m: f64) -> f64 {
+        (self.strand_length_square_m2 - length_m * length_m).sqrt() / self.pi_turns
+    }
+
+    /// `dD/dL` at a length with its diameter, dimensionless and negative.
+    pub fn diameter_slope(&self, length_m: f64, diameter_m: f64) -> f64 {
+        -length_m / (self.pi_turns * self.pi_turns * diameter_m)
     }
 }
 

@@ -32,7 +32,7 @@
 
 use std::f64::consts::PI;
 
-use crate::muscle::Muscle;
+use crate::muscle::{Kinematics, Muscle};
 
 /// Constants of the bladder for one muscle.
 #[derive(Debug, Clone, Copy)]
@@ -41,8 +41,7 @@ pub struct Bladder {
     rest_length_m: f64,
     rest_wall_m: f64,
     rest_mid_wall_m: f64,
-    strand_length_m: f64,
-    pi_turns: f64,
+    kinematics: Kinematics,
 }
 
 impl Bladder {
@@ -54,8 +53,7 @@ impl Bladder {
             rest_length_m: muscle.rest_length_m,
             rest_wall_m: muscle.wall_thickness_m,
             rest_mid_wall_m,
-            strand_length_m: muscle.strand_length_m(),
-            pi_turns: PI * muscle.turns(),
+            kinematics: Kinematics::of(muscle),
         }
     }
 
@@ -64,23 +62,28 @@ impl Bladder {
         self.rubber_volume_m3
     }
 
-    /// Diameter and wall, in m, at a length.
-    fn diameter_and_wall_m(&self, length_m: f64) -> (f64, f64) {
-        let diameter_m = (self.strand_length_m * self.strand_length_m - length_m * length_m).sqrt() / self.pi_turns;
+    /// Wall, in m, at a length with its diameter.
+    fn wall_m(&self, length_m: f64, diameter_m: f64) -> f64 {
         let root_m = (diameter_m * diameter_m - 4.0 * self.rubber_volume_m3 / (PI * length_m)).sqrt();
-        (diameter_m, 0.5 * (diameter_m - root_m))
+        0.5 * (diameter_m - root_m)
     }
 
     /// Stretches `λ₁`, `λ₂`, `λ₃` at a length.
     pub fn stretches(&self, length_m: f64) -> [f64; 3] {
-        let (diameter_m, wall_m) = self.diameter_and_wall_m(length_m);
+        let diameter_m = self.kinematics.diameter_m(length_m);
+        let wall_m = self.wall_m(length_m, diameter_m);
         [length_m / self.rest_length_m, (diameter_m - wall_m) / self.rest_mid_wall_m, wall_m / self.rest_wall_m]
     }
 
     /// Forces per unit of `C₁₀` and of `C₀₁`, in N/Pa: `V_r dI₁/dL` and `V_r dI₂/dL`.
     pub fn columns_n_per_pa(&self, length_m: f64) -> [f64; 2] {
-        let (diameter_m, wall_m) = self.diameter_and_wall_m(length_m);
-        let diameter_slope = -length_m / (self.pi_turns * self.pi_turns * diameter_m);
+        self.columns_at(length_m, self.kinematics.diameter_m(length_m))
+    }
+
+    /// [`columns_n_per_pa`](Self::columns_n_per_pa) where the diameter is known already.
+    pub(super) fn columns_at(&self, length_m: f64, diameter_m: f64) -> [f64; 2] {
+        let wall_m = self.wall_m(length_m, diameter_m);
+        let diameter_slope = self.kinematics.diameter_slope(length_m, diameter_m);
         let wall_slope =
             -wall_m * ((diameter_m - wall_m) + length_m * diameter_slope) / (length_m * (diameter_m - 2.0 * wall_m));
         let l1 = length_m / self.rest_length_m;

@@ -18,7 +18,7 @@ use super::gas::Gas;
 use super::rubber_friction::normal_force_n;
 use super::strand_friction::StrandContact;
 use super::{BaseParameters, Form, Parameter};
-use crate::muscle::Muscle;
+use crate::muscle::{Kinematics, Muscle};
 
 /// Columns of eq. 11.
 pub const N_COLUMNS: usize = 8 + NODES;
@@ -34,7 +34,7 @@ pub const FRICTION: usize = 6 + NODES;
 #[derive(Debug, Clone)]
 pub struct ForceColumns {
     form: Form,
-    muscle: Muscle,
+    kinematics: Kinematics,
     gas: Gas,
     bladder: Bladder,
     braid: Braid,
@@ -48,7 +48,7 @@ impl ForceColumns {
         let braid = Braid::new(muscle, form);
         Self {
             form,
-            muscle: muscle.clone(),
+            kinematics: Kinematics::of(muscle),
             gas: Gas::new(muscle),
             bladder: Bladder::new(muscle),
             braid,
@@ -81,13 +81,14 @@ impl ForceColumns {
     /// The columns at one instant; `direction` is +1 contracting, -1 extending, 0 neither.
     pub fn row(&self, pressure_pa: f64, length_m: f64, direction: f64) -> [f64; N_COLUMNS] {
         let mut row = [0.0; N_COLUMNS];
-        row[..3].copy_from_slice(&self.gas.columns_n(pressure_pa, self.muscle.contraction_ratio(length_m)));
+        let diameter_m = self.kinematics.diameter_m(length_m);
+        row[..3].copy_from_slice(&self.gas.columns_n(pressure_pa, self.kinematics.contraction_ratio(length_m)));
         row[3] = 1.0;
-        row[BLADDER..BRAID].copy_from_slice(&self.bladder.columns_n_per_pa(length_m));
+        row[BLADDER..BRAID].copy_from_slice(&self.bladder.columns_at(length_m, diameter_m));
         for (column, &node) in row[BRAID..FRICTION].iter_mut().zip(self.nodes.nodes_per_pa()) {
             *column = -self.braid.force_n(pressure_pa, length_m, node);
         }
-        let normal_n = normal_force_n(pressure_pa, self.muscle.diameter_m(length_m), length_m);
+        let normal_n = normal_force_n(pressure_pa, diameter_m, length_m);
         row[FRICTION] = -direction * normal_n;
         row[FRICTION + 1] = -direction * self.contact.force_n(pressure_pa, normal_n);
         row

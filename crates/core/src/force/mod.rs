@@ -19,7 +19,7 @@ pub mod strand_friction;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::muscle::Muscle;
+use crate::muscle::{Kinematics, Muscle};
 
 /// How eq. 11 is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -155,6 +155,7 @@ pub struct ForceModel {
     parameters: BaseParameters,
     muscle: Muscle,
     strand_modulus_pa: f64,
+    kinematics: Kinematics,
     gas: gas::Gas,
     bladder: bladder::Bladder,
     braid: braid::Braid,
@@ -169,6 +170,7 @@ impl ForceModel {
             parameters,
             muscle: muscle.clone(),
             strand_modulus_pa,
+            kinematics: Kinematics::of(muscle),
             gas: gas::Gas::new(muscle),
             bladder: bladder::Bladder::new(muscle),
             braid: braid::Braid::new(muscle, form),
@@ -199,13 +201,16 @@ impl ForceModel {
     /// The terms at gauge pressure, length and direction (+1 contracting, -1 extending, 0 neither).
     pub fn terms(&self, pressure_pa: f64, length_m: f64, direction: f64) -> Terms {
         let [k1, k2, k3, c10_pa, c01_pa, compliance_per_pa, rubber, strand] = self.parameters.theta;
-        let diameter_m = self.muscle.diameter_m(length_m);
+        let diameter_m = self.kinematics.diameter_m(length_m);
+        let [by_c10, by_c01] = self.bladder.columns_at(length_m, diameter_m);
         let normal_n = rubber_friction::normal_force_n(pressure_pa, diameter_m, length_m);
-        let friction_n = rubber * normal_n + strand * self.contact.force_n(pressure_pa, normal_n);
+        // A cube root, which most models have no use for.
+        let contact_n = if strand == 0.0 { 0.0 } else { strand * self.contact.force_n(pressure_pa, normal_n) };
+        let friction_n = rubber * normal_n + contact_n;
         Terms {
-            gas_n: self.gas.force_n(pressure_pa, self.muscle.contraction_ratio(length_m), k1, k2),
+            gas_n: self.gas.force_n(pressure_pa, self.kinematics.contraction_ratio(length_m), k1, k2),
             offset_n: k3,
-            bladder_n: self.form.bladder_sign() * self.bladder.force_n(length_m, c10_pa, c01_pa),
+            bladder_n: self.form.bladder_sign() * (c10_pa * by_c10 + c01_pa * by_c01),
             braid_n: -self.braid.force_n(pressure_pa, length_m, compliance_per_pa),
             friction_n: -direction * friction_n,
         }
