@@ -30,15 +30,19 @@ pub enum IdentifyError {
         /// Where it stays.
         pressure_kpa: f64,
     },
-    /// Too few samples with a certain direction.
-    #[error("{path}: {n_samples} samples with a certain direction for {n_parameters} parameters; record for longer")]
+    /// Fewer samples than a fit can use.
+    #[error(
+        "{path}: {n_samples} samples for {n_parameters} parameters; at least {needed} are needed, record for longer"
+    )]
     TooFewSamples {
         /// First estimation recording.
         path: String,
-        /// Samples.
+        /// Samples whose direction of motion is certain.
         n_samples: usize,
         /// Parameters.
         n_parameters: usize,
+        /// Samples that would do.
+        needed: usize,
     },
     /// Something about the instruments is wrong before any physics is.
     #[error("{0}")]

@@ -124,6 +124,8 @@ pub fn check(request: Request) -> Result<Checked, IdentifyError> {
             return Err(IdentifyError::Fault(fault));
         }
     }
+    let n_samples = gates[..n_estimation].iter().map(|gate| gate.quality.n_rows).sum();
+    enough(&gates[0].recording.path, n_samples)?;
     let pressures = || gates[..n_estimation].iter().filter_map(|gate| gate.quality.channel("pressure"));
     let lowest_pa = pressures().map(|channel| channel.lowest).fold(f64::INFINITY, f64::min);
     let highest_pa = pressures().map(|channel| channel.highest).fold(f64::NEG_INFINITY, f64::max);
@@ -192,14 +194,8 @@ impl Checked {
 
         let columns = ForceColumns::new(&self.muscle.muscle, self.muscle.strand_modulus_pa, self.form, largest_n_per_m);
         let condensed = condense(&estimation, &columns, 1, None)?;
+        enough(&estimation[0].recording.path, condensed.total.n_rows() as usize)?;
         let (space, unidentifiable) = self.search_space(&columns, &condensed, force_noise_n);
-        if condensed.total.n_rows() <= 2 * N_COLUMNS as u64 {
-            return Err(IdentifyError::TooFewSamples {
-                path: estimation[0].recording.path.clone(),
-                n_samples: condensed.total.n_rows() as usize,
-                n_parameters: space.free.len(),
-            });
-        }
         let column_floor_rmse_n =
             (condensed.total.residual_floor_square_sum() / condensed.total.n_rows() as f64).sqrt();
         let fit = search(
@@ -382,6 +378,16 @@ impl Checked {
             bladder_ratio: self.bladder_ratio,
         }
     }
+}
+
+/// Refuses fewer samples than twice the columns.
+fn enough(path: &str, n_samples: usize) -> Result<(), IdentifyError> {
+    let needed = 2 * N_COLUMNS;
+    if n_samples < needed {
+        let (path, n_parameters) = (path.to_owned(), Parameter::ALL.len());
+        return Err(IdentifyError::TooFewSamples { path, n_samples, n_parameters, needed });
+    }
+    Ok(())
 }
 
 /// Where the search and what follows it ended.

@@ -7,14 +7,16 @@ use crate::prepare::Gated;
 
 /// Highest gauge pressure that braided and molded muscles are run at, with room to spare, in Pa.
 const HIGHEST_PRESSURE_PA: f64 = 2.0e6;
-/// A muscle whose pressure never passes this was not inflated, in Pa.
-const LOWEST_PEAK_PRESSURE_PA: f64 = 2.0e3;
+/// A pressure that never passes this pulls with a few newtons at most, in Pa.
+const LOWEST_PEAK_PRESSURE_PA: f64 = 20.0e3;
+/// Peak force beyond that of an ideal muscle that no rubber and no stretch explain.
+const MOST_TIMES_IDEAL: f64 = 5.0;
 /// Beyond these contractions no braid works: 10 % stretched, half shortened.
 const CONTRACTION: (f64, f64) = (-0.10, 0.50);
 
 /// Checks pressure, length, force and clock of one recording against what a muscle can do.
 pub fn check(gate: &Gated, muscle: &Muscle) -> Option<Fault> {
-    pressure(gate).or_else(|| length(gate, muscle)).or_else(|| force(gate, muscle)).or_else(|| clock(gate))
+    pressure(gate, muscle).or_else(|| length(gate, muscle)).or_else(|| force(gate, muscle)).or_else(|| clock(gate))
 }
 
 fn slip(
@@ -29,10 +31,20 @@ fn slip(
     Fault::UnitSlip { path: gate.recording.path.clone(), channel, reached, factor, direction, guess }
 }
 
-fn pressure(gate: &Gated) -> Option<Fault> {
+/// Peak force as recorded, and as an ideal muscle has it at the highest pressure and the longest length.
+fn peak_forces_n(gate: &Gated, muscle: &Muscle) -> Option<(f64, f64)> {
+    let force = gate.quality.channel("force")?;
+    let pressure = gate.quality.channel("pressure")?;
+    let length = gate.quality.channel("length")?;
+    let contraction = muscle.contraction_ratio(length.highest).clamp(-0.02, 0.9 * muscle.max_contraction_ratio());
+    let ideal_n = pam_core::force::gas::Gas::new(muscle).force_n(pressure.highest, contraction, 1.0, 1.0);
+    Some((force.highest.max(-force.lowest), ideal_n))
+}
+
+fn pressure(gate: &Gated, muscle: &Muscle) -> Option<Fault> {
     let channel = gate.quality.channel("pressure")?;
     let peak_pa = channel.highest.max(-channel.lowest);
-    let reached = || format!("{:.4} kPa", peak_pa * 1e-3);
+    let reached = || format!("{:.3} kPa", peak_pa * 1e-3);
     if peak_pa > HIGHEST_PRESSURE_PA {
         // What would bring the peak to a few bar.
         let (factor, guess) = match peak_pa / 3e5 {
@@ -42,7 +54,8 @@ fn pressure(gate: &Gated) -> Option<Fault> {
         };
         return Some(slip(gate, "pressure", reached(), factor, "high", guess));
     }
-    if peak_pa < LOWEST_PEAK_PRESSURE_PA && peak_pa > 0.0 {
+    let (peak_n, ideal_n) = peak_forces_n(gate, muscle)?;
+    if peak_pa < LOWEST_PEAK_PRESSURE_PA && peak_pa > 0.0 && peak_n > MOST_TIMES_IDEAL * ideal_n.max(1.0) {
         let (factor, guess) = match 3e5 / peak_pa {
             ratio if ratio < 300.0 => (100.0, "bar under a header that says kPa is a factor of 100"),
             ratio if ratio < 5000.0 => (1000.0, "MPa under a header that says kPa, or kPa as Pa, is a factor of 1000"),
@@ -60,7 +73,7 @@ fn length(gate: &Gated, muscle: &Muscle) -> Option<Fault> {
         return None;
     }
     let ratio = channel.highest / muscle.rest_length_m;
-    let reached = || format!("{:.4} mm", channel.highest * 1e3);
+    let reached = || format!("{:.3} mm", channel.highest * 1e3);
     for (factor, guess) in [
         (1000.0, "mm under a header that says m is a factor of 1000"),
         (25.4, "mm under a header that says in is a factor of 25.4"),
@@ -93,13 +106,8 @@ fn length(gate: &Gated, muscle: &Muscle) -> Option<Fault> {
 }
 
 fn force(gate: &Gated, muscle: &Muscle) -> Option<Fault> {
-    let channel = gate.quality.channel("force")?;
-    let pressure = gate.quality.channel("pressure")?;
-    let length = gate.quality.channel("length")?;
-    let peak_n = channel.highest.max(-channel.lowest);
-    let contraction = muscle.contraction_ratio(length.highest).max(-0.02);
-    let ideal_n = pam_core::force::gas::Gas::new(muscle).force_n(pressure.highest, contraction, 1.0, 1.0);
-    let reached = || format!("{peak_n:.4} N");
+    let (peak_n, ideal_n) = peak_forces_n(gate, muscle)?;
+    let reached = || format!("{peak_n:.3} N");
     if ideal_n > 1.0 && peak_n > 100.0 * ideal_n {
         return Some(slip(
             gate,

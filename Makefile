@@ -1,0 +1,47 @@
+# The two commands of the README are `make` and `make test`; the others are for longer work.
+
+CARGO ?= cargo
+OUT := out
+DATA := datasets/bench-nominal
+BIN := target/release
+
+.PHONY: all test check bench datasets recordings clean cargo-is-there
+
+all: cargo-is-there
+	@$(CARGO) build --release --locked --workspace --bins
+	@mkdir -p $(OUT)
+	$(BIN)/pam-identify $(DATA)/isobaric-triangles.csv $(DATA)/isometric-ramps.csv $(DATA)/minor-loops.csv \
+		$(DATA)/length-steps.csv --holdout $(DATA)/multisine.csv --holdout $(DATA)/lift.csv \
+		--muscle configs/muscle-nominal.toml --out $(OUT)/model.json --figure $(OUT)/fit.svg --compare-forms
+	$(BIN)/pam-predict $(DATA)/multisine.csv --model $(OUT)/model.json --out $(OUT)/predicted.csv --max-rmse-n 2
+	@echo
+	@echo "Figure: $(OUT)/fit.svg"
+	@echo "Model:  $(OUT)/model.json    Prediction: $(OUT)/predicted.csv"
+
+test: cargo-is-there
+	@$(CARGO) test --locked --workspace
+
+check: cargo-is-there
+	@scripts/check
+
+# Benchmarks: functions by divan, whole programs by script.
+bench: cargo-is-there
+	@$(CARGO) bench --locked --workspace
+	@scripts/bench-programs
+
+# Writes the shipped recordings anew, byte for byte.
+datasets: cargo-is-there
+	@scripts/make-datasets
+
+# Recordings of real muscles, from their origin; needs a network.
+recordings:
+	@scripts/fetch-recordings
+
+clean:
+	@rm -rf $(OUT)
+	@$(CARGO) clean --quiet
+
+cargo-is-there:
+	@command -v $(CARGO) >/dev/null || { \
+		echo "cargo is missing. Install the Rust toolchain, 1.89 or newer, from https://rustup.rs, then run make again."; \
+		exit 2; }

@@ -1,0 +1,158 @@
+//! The program as a person meets it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
+}
+
+/// A model whose every value is known, so that its forces can be computed by hand: gas and a constant alone.
+const MODEL: &str = include_str!("data/model.json");
+
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("model.json"), MODEL).unwrap();
+        let log = root().join("datasets/bench-nominal/multisine.csv");
+        std::fs::copy(log, folder.path().join("log.csv")).unwrap();
+        Self { folder }
+    }
+
+    fn file(&self, name: &str, content: &str) -> &Self {
+        std::fs::write(self.folder.path().join(name), content).unwrap();
+        self
+    }
+
+    fn run(&self, arguments: &str) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_pam-predict"))
+            .args(arguments.split(' '))
+            .current_dir(self.folder.path())
+            .stdin(Stdio::null())
+            .output()
+            .unwrap()
+    }
+
+    fn refusal(&self, arguments: &str) -> String {
+        let output = self.run(arguments);
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{stderr}");
+        assert!(!self.folder.path().join("out.csv").exists(), "an output was written");
+        let errors: Vec<&str> = stderr.lines().filter(|line| line.starts_with("error: ")).collect();
+        assert_eq!(errors.len(), 1, "{stderr}");
+        errors[0].to_owned()
+    }
+}
+
+#[test]
+fn adds_the_modelled_force_and_the_residual_to_every_row() {
+    let bench = Bench::new();
+    let output = bench.run("log.csv --model model.json --out - --quiet");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("time_s,pressure_kPa,length_mm,force_N,force_model_N,residual_N"));
+    let mut rows = 0;
+    for line in lines {
+        let [_, p, l, f, model, residual]: [f64; 6] =
+            line.split(',').map(|field| field.parse().unwrap()).collect::<Vec<_>>().try_into().unwrap();
+        // π r₀² p [3 (1 - ε)² / tan² α₀ - 1 / sin² α₀] + 2 N, with r₀ = 10 mm, α₀ = 25°, L₀ = 267 mm.
+        let angle = 25.0_f64.to_radians();
+        let reach = l / 267.0;
+        let expected =
+            std::f64::consts::PI * 0.1 * p * (3.0 * reach * reach / angle.tan().powi(2) - 1.0 / angle.sin().powi(2))
+                + 2.0;
+        assert!((model - expected).abs() < 1e-3 + 1e-6 * expected.abs(), "{line}: {expected}");
+        assert!((f - model - residual).abs() < 2e-4, "{line}");
+        rows += 1;
+    }
+    assert_eq!(rows, 9601);
+}
+
+#[test]
+fn a_recording_without_force_is_predicted_too() {
+    let bench = Bench::new();
+    bench.file("short.csv", "time_s,pressure_kPa,length_mm\n0,100,260\n0.01,110,259\n0.02,120,258\n");
+    let output = bench.run("short.csv --model model.json --out out.csv");
+    assert_eq!(output.status.code(), Some(0));
+    let text = std::fs::read_to_string(bench.folder.path().join("out.csv")).unwrap();
+    assert_eq!(text.lines().next(), Some("time_s,pressure_kPa,length_mm,force_model_N"));
+    let refused = bench.run("short.csv --model model.json --out out.csv --max-rmse-n 1");
+    assert_eq!(refused.status.code(), Some(2));
+}
+
+#[test]
+fn a_residual_above_the_limit_is_rejected_and_still_written() {
+    let bench = Bench::new();
+    let output = bench.run("log.csv --model model.json --out out.csv --max-rmse-n 1");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(bench.folder.path().join("out.csv").exists());
+    assert!(String::from_utf8(output.stderr).unwrap().contains("rejected: RMSE"));
+    assert_eq!(bench.run("log.csv --model model.json --out out.csv --max-rmse-n 1000").status.code(), Some(0));
+}
+
+#[test]
+fn leaving_the_model_s_domain_is_said() {
+    let bench = Bench::new();
+    let output = bench.run("log.csv --model model.json --out out.csv");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("pressure runs from") && said.contains("the force is extrapolated"), "{said}");
+}
+
+#[test]
+fn every_bad_input_gets_one_line_with_the_remedy() {
+    let bench = Bench::new();
+    bench.file("diagnosis.json", "{\"schema\": \"pam-diagnosis/1\"}");
+    bench.file("later.json", &MODEL.replace("pam-model/1", "pam-model/9"));
+    bench.file("broken.json", &MODEL[..MODEL.len() / 2]);
+    bench.file("empty.json", "");
+    bench.file("shape.json", &MODEL.replacen("\"name\": \"k2\"", "\"name\": \"k1\"", 1));
+    bench.file("soft.json", &MODEL.replace("1e15", "-3e9"));
+    bench.file("odd.json", &MODEL.replacen("\"form\"", "\"shape\"", 1));
+    let cases = [
+        ("log.csv --model none.json --out out.csv", "cannot read none.json: No such file or directory (os error 2)"),
+        (
+            "log.csv --model diagnosis.json --out out.csv",
+            "diagnosis.json: schema is \"pam-diagnosis/1\", expected \"pam-model/1\"; write it with pam-identify",
+        ),
+        (
+            "log.csv --model later.json --out out.csv",
+            "later.json: schema is \"pam-model/9\", expected \"pam-model/1\"; write it with pam-identify",
+        ),
+        (
+            "log.csv --model broken.json --out out.csv",
+            "broken.json:73:10: EOF while parsing a value; expected a pam-model/1 artifact",
+        ),
+        (
+            "log.csv --model empty.json --out out.csv",
+            "empty.json:1:0: EOF while parsing a value; expected a pam-model/1 artifact",
+        ),
+        (
+            "log.csv --model shape.json --out out.csv",
+            "shape.json: parameter k1 stands there twice; write the artifact anew with its program",
+        ),
+        (
+            "log.csv --model soft.json --out out.csv",
+            "soft.json: strand_modulus is -3000000000, which no strand has; write the artifact anew with its program",
+        ),
+        (
+            "log.csv --model odd.json --out out.csv",
+            "odd.json:28:8: unknown field `shape`, expected one of `schema`, `tool`, `inputs`, `config`, `seed`, `geometry`, `strand_modulus_pa`, `form`, `parameters`, `composites`, `effects`, `correlation`, `fit`, `domain`, `direction`, `quality`, `search`, `unbounded`, `warnings`; expected a pam-model/1 artifact",
+        ),
+        ("none.csv --model model.json --out out.csv", "none.csv: no such file; check the path"),
+        (
+            "log.csv --model model.json --out log.csv",
+            "cannot write log.csv: it is also an input, which the run would destroy; name another",
+        ),
+        (
+            "log.csv --model model.json",
+            "the following required arguments were not provided: --out <PREDICTED.csv>; see --help",
+        ),
+    ];
+    for (arguments, expected) in cases {
+        assert_eq!(bench.refusal(arguments), format!("error: {expected}"), "{arguments}");
+    }
+}
