@@ -13,15 +13,26 @@ pub(crate) fn svg(found: &Identified, artifact: &ModelArtifact) -> anyhow::Resul
         .into_iter()
         .zip(names)
         .enumerate()
-        .map(|(index, (trace, name))| FitRecording {
-            name,
-            role: if index < n_estimation { Role::Estimation } else { Role::Validation },
-            pressure_kpa: trace.pressure_pa.iter().map(|pressure_pa| pressure_pa * 1e-3).collect(),
-            length_mm: trace.length_m.iter().map(|length_m| length_m * 1e3).collect(),
-            time_s: trace.time_s,
-            force_n: trace.force_n,
-            model_n: trace.model_n,
-            direction: trace.direction,
+        .map(|(index, (trace, name))| {
+            // Around reversals noise hides the direction of friction: not counted, and not drawn.
+            let counted = |values: &[f64], scale: f64| -> Vec<f64> {
+                values
+                    .iter()
+                    .zip(&trace.settled)
+                    .filter(|(_, settled)| **settled)
+                    .map(|(value, _)| value * scale)
+                    .collect()
+            };
+            FitRecording {
+                name,
+                role: if index < n_estimation { Role::Estimation } else { Role::Validation },
+                time_s: counted(&trace.time_s, 1.0),
+                pressure_kpa: counted(&trace.pressure_pa, 1e-3),
+                length_mm: counted(&trace.length_m, 1e3),
+                force_n: counted(&trace.force_n, 1.0),
+                model_n: counted(&trace.model_n, 1.0),
+                direction: counted(&trace.direction, 1.0),
+            }
         })
         .collect();
     let starts = found.convergence_n().into_iter().zip(&artifact.search.starts);

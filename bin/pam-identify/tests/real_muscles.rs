@@ -2,6 +2,8 @@
 //! `make recordings` fetches them, or `PAM_RECORDINGS` names their folder. Without them these tests say that they
 //! were skipped.
 
+#![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

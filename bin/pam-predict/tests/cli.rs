@@ -1,5 +1,7 @@
 //! The program as a person meets it.
 
+#![expect(clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 

@@ -202,8 +202,8 @@ fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
 /// A flip is noticed at `f`, one threshold away from the extreme. The last value half a threshold away, at `d`,
 /// tells the speed of the return, and going on backwards at that speed reaches the turn at
 /// `d - (f - d)`. After a hold that is the end of the hold, where the extreme itself is any peak of the noise.
-/// A turn that accelerates, as a sine does, lies up to `1.6 (f - d)` earlier; so much before is unsettled,
-/// and half a moving average more on either side.
+/// A turn that accelerates, as a sine does, lies up to `1.6 (f - d)` earlier, and noise makes `f - d` too short;
+/// twice that before is unsettled, and half a moving average more on either side.
 fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, marks: &mut [i8]) {
     let Some(&first) = smooth.first() else { return };
     let mut sign = carried;
@@ -240,7 +240,7 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
         let took = index - departed;
         let mut turn = departed.saturating_sub(took).max(extreme_at);
         let mut noticed = index;
-        let doubtful = turn.saturating_sub(2 * took + half).max(last_turn);
+        let doubtful = turn.saturating_sub(3 * took + half).max(last_turn);
         if took <= half {
             // Faster than the average follows: the average smears the start, the raw values show it.
             let start = (extreme_at..raw.len().min(index + half)).rev().find(|&at| near(raw[at])).unwrap_or(turn);

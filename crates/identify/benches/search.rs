@@ -1,7 +1,6 @@
 //! The phases of an identification: `cargo bench -p pam-identification`.
 
 use std::ops::ControlFlow;
-use std::path::Path;
 
 use divan::{Bencher, black_box};
 use pam_core::force::columns::ForceColumns;

@@ -1,5 +1,7 @@
 //! Whatever the seed, the search ends at the least-squares optimum.
 
+#![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
+
 use std::path::Path;
 
 use pam_core::force::columns::ForceColumns;

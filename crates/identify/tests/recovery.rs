@@ -3,6 +3,8 @@
 //! The bench integrates ten times finer than it logs and computes forces from stored energies, so that
 //! nothing but the physics is shared with the fit.
 
+#![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
+
 use pam_core::artifact::Tool;
 use pam_core::artifact::model::{Loss, ModelArtifact};
 use pam_core::force::Form;
@@ -11,7 +13,7 @@ use pam_core::recording::{Recording, Repairs, Samples};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
 use pam_identification::search_space::LATEX_RATIO;
-use pam_virtual_bench::{Bench, Options, Parameters, Sensors, TrueMuscle, command};
+use pam_virtual_bench::{Bench, Options, Parameters, TrueMuscle, command};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 

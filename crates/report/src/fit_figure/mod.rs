@@ -121,7 +121,7 @@ fn headline(canvas: &mut Canvas<'_>, page: Rect, figure: &FitFigure) {
     let numbers = [
         ("RMSE on estimation recordings", figure.rmse_estimation_n),
         ("on validation recordings", figure.rmse_validation_n),
-        ("noise of the force", figure.noise_floor_n),
+        ("sensor noise", figure.noise_floor_n),
     ];
     let parts: Vec<String> = numbers
         .into_iter()
