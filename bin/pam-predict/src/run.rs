@@ -1,10 +1,9 @@
 //! Recording and model in, recording with two more columns out.
 
-use std::io::Write as _;
-
 use anyhow::{Context as _, ensure};
 use pam_cli::{Output, Verdict};
 use pam_core::artifact::ModelArtifact;
+use pam_core::force::ForceModel;
 use pam_core::recording::{ReadOptions, read_recording};
 use pam_identification::evaluate::evaluate;
 use pam_identification::predict::{forces_n, outside, prepare};
@@ -60,36 +59,54 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
 }
 
 /// Decimals are those of a good sensor: 1 µs, 0.1 Pa, 0.1 µm, 0.1 mN.
-fn write(out: &mut Output, prepared: &Prepared, model: &pam_core::force::ForceModel) -> anyhow::Result<()> {
+fn write(out: &mut Output, prepared: &Prepared, model: &ForceModel) -> std::io::Result<()> {
     let samples = &prepared.recording.samples;
-    let mut header = "time_s,pressure_kPa,length_mm".to_owned();
-    if samples.has_force() {
-        header.push_str(",force_N");
+    let (has_force, has_temperature) = (samples.has_force(), samples.has_temperature());
+    let mut table = csv::Writer::from_writer(out);
+    let mut names = vec!["time_s", "pressure_kPa", "length_mm"];
+    if has_force {
+        names.push("force_N");
     }
-    if samples.has_temperature() {
-        header.push_str(",temperature_C");
+    if has_temperature {
+        names.push("temperature_C");
     }
-    header.push_str(if samples.has_force() { ",force_model_N,residual_N" } else { ",force_model_N" });
-    writeln!(out, "{header}")?;
+    names.push("force_model_N");
+    if has_force {
+        names.push("residual_N");
+    }
+    table.write_record(names).map_err(io_error)?;
+    let mut record = csv::ByteRecord::new();
     for chunk in samples.chunks() {
         let chunk = chunk?;
         let model_n = forces_n(prepared, model, &chunk);
         for (row, &model_n) in model_n.iter().enumerate() {
-            let (time_s, pressure_kpa, length_mm) =
-                (chunk.time_s()[row], chunk.pressure_pa()[row] * 1e-3, chunk.length_m()[row] * 1e3);
-            write!(out, "{time_s:.6},{pressure_kpa:.4},{length_mm:.4}")?;
-            if samples.has_force() {
-                write!(out, ",{:.4}", chunk.force_n()[row])?;
+            record.clear();
+            let mut field = |value: f64, decimals: usize| {
+                record.push_field(format!("{value:.decimals$}").as_bytes());
+            };
+            field(chunk.time_s()[row], 6);
+            field(chunk.pressure_pa()[row] * 1e-3, 4);
+            field(chunk.length_m()[row] * 1e3, 4);
+            if has_force {
+                field(chunk.force_n()[row], 4);
             }
-            if samples.has_temperature() {
-                write!(out, ",{:.3}", chunk.temperature_k()[row] - 273.15)?;
+            if has_temperature {
+                field(chunk.temperature_k()[row] - 273.15, 3);
             }
-            write!(out, ",{model_n:.4}")?;
-            if samples.has_force() {
-                write!(out, ",{:.4}", chunk.force_n()[row] - model_n)?;
+            field(model_n, 4);
+            if has_force {
+                field(chunk.force_n()[row] - model_n, 4);
             }
-            writeln!(out)?;
+            table.write_byte_record(&record).map_err(io_error)?;
         }
     }
-    Ok(())
+    table.flush()
+}
+
+/// The writer's own error, which knows the file and whether its reader has gone.
+fn io_error(error: csv::Error) -> std::io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        kind => std::io::Error::other(format!("{kind:?}")),
+    }
 }

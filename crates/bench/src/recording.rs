@@ -45,19 +45,27 @@ impl BenchRecording {
     /// # Errors
     /// Those of `out`.
     pub fn write_csv(&self, out: &mut impl Write) -> std::io::Result<()> {
-        let Decimals { time_s, pressure_kpa, length_mm, force_n } = self.decimals;
-        writeln!(out, "time_s,pressure_kPa,length_mm,force_N")?;
+        let decimals = self.decimals;
+        let mut table = csv::Writer::from_writer(out);
+        table.write_record(["time_s", "pressure_kPa", "length_mm", "force_N"]).map_err(io_error)?;
         for index in 0..self.n_samples() {
-            writeln!(
-                out,
-                "{:.time_s$},{:.pressure_kpa$},{:.length_mm$},{:.force_n$}",
-                self.time_s[index],
-                without_minus_zero(self.pressure_pa[index] * 1e-3),
-                self.length_m[index] * 1e3,
-                without_minus_zero(self.force_n[index]),
-            )?;
+            let row = [
+                (self.time_s[index], decimals.time_s),
+                (without_minus_zero(self.pressure_pa[index] * 1e-3), decimals.pressure_kpa),
+                (self.length_m[index] * 1e3, decimals.length_mm),
+                (without_minus_zero(self.force_n[index]), decimals.force_n),
+            ];
+            table.write_record(row.map(|(value, decimals)| format!("{value:.decimals$}"))).map_err(io_error)?;
         }
-        Ok(())
+        table.flush()
+    }
+}
+
+/// The error of what is written to, which the writer of the table wraps.
+fn io_error(error: csv::Error) -> std::io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        kind => std::io::Error::other(format!("{kind:?}")),
     }
 }
 

@@ -1,7 +1,6 @@
 //! Fields of one line, and the numbers in them.
 
-use std::borrow::Cow;
-use std::ops::Range;
+use csv_core::{ReadFieldResult, ReadRecordResult};
 
 /// A line whose quote is not closed, with the field (counted from 0) that it opens.
 #[derive(Debug, PartialEq)]
@@ -32,66 +31,114 @@ pub(crate) fn is_comment(line: &[u8]) -> bool {
     line.trim_ascii_start().first() == Some(&b'#')
 }
 
-/// Splits a line into fields without the blanks and quotes around them. Of the fields, at most `limit` are
-/// stored in `fields`; the number of all of them is returned.
-pub(crate) fn split(
-    line: &[u8],
+/// Splits lines into fields.
+///
+/// # Design
+/// `csv-core` knows where a field ends and what its quotes mean. Two habits of loggers are outside its grammar, so
+/// a line with quotes is handed to it field by field: blanks before a quote are passed over, and text behind a
+/// closing quote leaves the field as it was written. A line is all it sees, so that a quote left open cannot take
+/// the lines below along.
+#[derive(Debug)]
+pub(crate) struct Splitter {
+    reader: csv_core::Reader,
     separator: u8,
-    limit: usize,
-    fields: &mut Vec<Range<usize>>,
-) -> Result<usize, OpenQuote> {
-    fields.clear();
-    let is_space = |byte: u8| byte == b' ' || (byte == b'\t' && separator != b'\t');
-    let mut n_fields = 0;
-    let mut position = 0;
-    loop {
-        while position < line.len() && is_space(line[position]) {
-            position += 1;
-        }
-        let mut field = position..position;
-        if line.get(position) == Some(&b'"') {
-            let close = closing_quote(line, position + 1).ok_or(OpenQuote { field: n_fields })?;
-            field = position + 1..close;
-            position = close + 1;
-        }
-        let from = position;
-        while position < line.len() && line[position] != separator {
-            position += 1;
-        }
-        if !line[from..position].iter().all(|byte| is_space(*byte)) {
-            // Text without quotes, or text behind a closing quote, which then is part of it.
-            let first = if from == field.start { from } else { field.start - 1 };
-            field = first..position;
-        }
-        let content = &line[field.clone()];
-        let start = field.start + content.len() - content.trim_ascii_start().len();
-        let field = start..start + content.trim_ascii().len();
-        if n_fields < limit {
-            fields.push(field);
-        }
-        n_fields += 1;
-        if position == line.len() {
-            return Ok(n_fields);
-        }
-        position += 1;
+    /// Fields without their quotes, one behind the other.
+    text: Vec<u8>,
+    /// Where in `text` each field ends.
+    ends: Vec<usize>,
+}
+
+impl Clone for Splitter {
+    fn clone(&self) -> Self {
+        // A cloned reader of csv-core 0.1 forgets its separator.
+        Self::new(self.separator)
     }
 }
 
-/// The quote that closes; two in a row stand for one inside.
-fn closing_quote(line: &[u8], mut position: usize) -> Option<usize> {
-    loop {
-        position += line.get(position..)?.iter().position(|byte| *byte == b'"')?;
-        if line.get(position + 1) != Some(&b'"') {
-            return Some(position);
+impl Splitter {
+    pub(crate) fn new(separator: u8) -> Self {
+        let terminator = csv_core::Terminator::Any(b'\n');
+        let reader = csv_core::ReaderBuilder::new().delimiter(separator).terminator(terminator).build();
+        Self { reader, separator, text: Vec::new(), ends: Vec::new() }
+    }
+
+    /// Splits one line, with or without its line feed.
+    pub(crate) fn split(&mut self, line: &[u8]) -> Result<Fields<'_>, OpenQuote> {
+        // No line has more fields than bytes and one.
+        if self.text.len() <= line.len() {
+            self.text.resize(line.len() + 1, 0);
+            self.ends.resize(line.len() + 1, 0);
         }
-        position += 2;
+        self.reader.reset();
+        let n_fields =
+            if memchr::memchr(b'"', line).is_some() { self.split_quoted(line)? } else { self.split_plain(line) };
+        Ok(Fields { text: &self.text, ends: &self.ends[..n_fields] })
+    }
+
+    fn split_plain(&mut self, line: &[u8]) -> usize {
+        let (result, _, n_bytes, mut n_fields) = self.reader.read_record(line, &mut self.text, &mut self.ends);
+        if result != ReadRecordResult::Record {
+            // Nothing ends the last field but the end of the line.
+            self.ends[n_fields] = n_bytes;
+            n_fields += 1;
+        }
+        n_fields
+    }
+
+    #[cold]
+    fn split_quoted(&mut self, line: &[u8]) -> Result<usize, OpenQuote> {
+        let (mut rest, mut start, mut n_fields) = (line, 0, 0);
+        loop {
+            while let [byte @ (b' ' | b'\t'), tail @ ..] = rest
+                && *byte != self.separator
+            {
+                rest = tail;
+            }
+            let (mut result, n_read, n_written) = self.reader.read_field(rest, &mut self.text[start..]);
+            if result == ReadFieldResult::InputEmpty {
+                // A line feed ends the field unless it is within quotes.
+                (result, _, _) = self.reader.read_field(b"\n", &mut [0]);
+            }
+            let ReadFieldResult::Field { record_end } = result else { return Err(OpenQuote { field: n_fields }) };
+            let (field, tail) = rest.split_at(n_read);
+            let written = if record_end { field } else { &field[..n_read - 1] }.trim_ascii();
+            let mut end = start + n_written;
+            if written.first() == Some(&b'"') && written.last() != Some(&b'"') {
+                end = start + written.len();
+                self.text[start..end].copy_from_slice(written);
+            }
+            self.ends[n_fields] = end;
+            n_fields += 1;
+            if record_end {
+                return Ok(n_fields);
+            }
+            (rest, start) = (tail, end);
+        }
     }
 }
 
-/// The text of a field; bytes that are not UTF-8 are replaced.
-pub(crate) fn text(field: &[u8]) -> Cow<'_, str> {
-    let text = String::from_utf8_lossy(field);
-    if text.contains("\"\"") { Cow::Owned(text.replace("\"\"", "\"")) } else { text }
+/// Fields of a line.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fields<'a> {
+    text: &'a [u8],
+    ends: &'a [usize],
+}
+
+impl<'a> Fields<'a> {
+    pub(crate) fn len(self) -> usize {
+        self.ends.len()
+    }
+
+    /// Field `index`, counted from 0, without blanks around it.
+    #[inline]
+    pub(crate) fn get(self, index: usize) -> &'a [u8] {
+        let start = if index == 0 { 0 } else { self.ends[index - 1] };
+        self.text[start..self.ends[index]].trim_ascii()
+    }
+
+    pub(crate) fn iter(self) -> impl Iterator<Item = &'a [u8]> {
+        (0..self.len()).map(move |index| self.get(index))
+    }
 }
 
 /// The number in a field without blanks around it.
@@ -118,10 +165,9 @@ mod tests {
     use super::*;
 
     fn fields(line: &str, separator: char) -> Vec<String> {
-        let mut ranges = Vec::new();
-        let n_fields = split(line.as_bytes(), separator as u8, usize::MAX, &mut ranges).unwrap();
-        assert_eq!(n_fields, ranges.len());
-        ranges.into_iter().map(|range| text(&line.as_bytes()[range]).into_owned()).collect()
+        let mut splitter = Splitter::new(separator as u8);
+        let fields = splitter.split(line.as_bytes()).unwrap();
+        fields.iter().map(|field| String::from_utf8_lossy(field).into_owned()).collect()
     }
 
     #[test]
@@ -137,8 +183,10 @@ mod tests {
 
     #[test]
     fn a_quote_left_open_is_found_in_its_field() {
-        assert_eq!(split(b"1,\"2,3", b',', 9, &mut Vec::new()), Err(OpenQuote { field: 1 }));
-        assert_eq!(split(b"\"\"\"", b',', 9, &mut Vec::new()), Err(OpenQuote { field: 0 }));
+        for (line, field) in [("1,\"2,3", 1), ("\"\"\"", 0), ("1,2, \"3\n", 2), ("\"", 0)] {
+            let open = Splitter::new(b',').split(line.as_bytes()).unwrap_err();
+            assert_eq!(open, OpenQuote { field }, "{line}");
+        }
     }
 
     #[test]

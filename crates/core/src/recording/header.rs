@@ -26,7 +26,7 @@ pub(crate) enum Source {
 }
 
 /// How to read a row.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Plan {
     /// Per field, the slot that takes its value.
     pub(crate) fields: Vec<Option<usize>>,

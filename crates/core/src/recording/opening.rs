@@ -1,7 +1,7 @@
 //! The first line that is neither blank nor a comment: a header, or a row whose columns are named elsewhere.
 
 use super::error::{Place, ReadErrorKind};
-use super::fields::{number, split, text};
+use super::fields::{Fields, Splitter, number};
 use super::header::{self, Plan};
 use super::read::{ReadOptions, Refusal, whole};
 use super::sniff::Layout;
@@ -57,10 +57,8 @@ fn names(
     if layout.space_separated {
         return Err((at(0), ReadErrorKind::SpaceSeparated));
     }
-    let mut ranges = Vec::new();
-    split(line, layout.separator, usize::MAX, &mut ranges)
-        .map_err(|quote| (at(quote.field), ReadErrorKind::OpenQuote))?;
-    let fields: Vec<&[u8]> = ranges.into_iter().map(|range| &line[range]).collect();
+    let mut splitter = Splitter::new(layout.separator);
+    let fields = splitter.split(line).map_err(|quote| (at(quote.field), ReadErrorKind::OpenQuote))?;
     let n_numbers = fields.iter().filter(|field| number(field, layout.separator != b',').is_ok()).count();
     let n_filled = fields.iter().filter(|field| !field.is_empty()).count();
     if let Some(columns) = &options.columns {
@@ -74,7 +72,7 @@ fn names(
         return Ok(Named { names: columns.names.clone(), line: None, opened: Opened::OnRow });
     }
     if n_numbers == 0 || 2 * n_numbers < n_filled {
-        return Ok(Named { names: column_names(&fields), line: Some(line_number), opened: Opened::OnHeader });
+        return Ok(Named { names: column_names(fields), line: Some(line_number), opened: Opened::OnHeader });
     }
     if let Some(comment) = comment
         && let Some(names) = names_in_comment(&comment.text, layout)
@@ -85,18 +83,15 @@ fn names(
 }
 
 /// Fields of a header. A separator at its end names no column.
-fn column_names(fields: &[&[u8]]) -> Vec<Option<String>> {
-    let n_named = fields.iter().rposition(|field| !field.is_empty()).map_or(1, |last| last + 1);
-    fields.iter().take(n_named).map(|field| Some(text(field).into_owned())).collect()
+fn column_names(fields: Fields<'_>) -> Vec<Option<String>> {
+    let n_named = (0..fields.len()).rposition(|index| !fields.get(index).is_empty()).map_or(1, |last| last + 1);
+    fields.iter().take(n_named).map(|field| Some(String::from_utf8_lossy(field).into_owned())).collect()
 }
 
 /// A header behind `#`, as numpy writes it: as many names as the rows have fields, one of them a quantity.
 fn names_in_comment(comment: &[u8], layout: Layout) -> Option<Vec<Option<String>>> {
     let line = comment.trim_ascii_start().strip_prefix(b"#")?;
-    let mut ranges = Vec::new();
-    split(line, layout.separator, layout.n_fields + 1, &mut ranges).ok()?;
-    let fields: Vec<&[u8]> = ranges.into_iter().map(|range| &line[range]).collect();
-    let names = column_names(&fields);
+    let names = column_names(Splitter::new(layout.separator).split(line).ok()?);
     let is_channel = |name: &Option<String>| matches!(name.as_deref().map(Name::read), Some(Name::Channel(..)));
     (names.len() == layout.n_fields && names.iter().any(is_channel)).then_some(names)
 }

@@ -1,7 +1,7 @@
 //! First look at a file: whether it is text, what separates its columns and how many there are.
 
 use super::error::ReadErrorKind;
-use super::fields::{is_blank, is_comment, number, split, strip_line_end};
+use super::fields::{Fields, Splitter, is_blank, is_comment, number, strip_line_end};
 
 /// Bytes that decide whether a file is text.
 const TEXT_BYTES: usize = 4096;
@@ -91,10 +91,9 @@ pub(crate) fn layout(start: &[u8], n_columns: Option<usize>) -> Layout {
 
 /// Fields of a row; an empty one at its end is the mark of loggers that end a row with a separator.
 fn count(row: &[u8], separator: u8) -> usize {
-    let mut fields = Vec::new();
     // A quote left open is for the reader to refuse.
     let n_plain = || row.iter().filter(|byte| **byte == separator).count() + 1;
-    let n_fields = split(row, separator, SAMPLE_FIELDS, &mut fields).unwrap_or_else(|_| n_plain());
+    let n_fields = Splitter::new(separator).split(row).map_or_else(|_| n_plain(), Fields::len);
     n_fields - usize::from(n_fields > 1 && row.trim_ascii_end().last().is_none_or(|byte| *byte == separator))
 }
 
@@ -106,12 +105,12 @@ fn commonest(counts: &[usize]) -> usize {
 /// Fields below the first row that are numbers, in thousandths.
 fn numeric_share(rows: &[&[u8]], separator: u8) -> usize {
     let (mut n_numbers, mut n_fields) = (0, 0);
-    let mut fields = Vec::new();
+    let mut splitter = Splitter::new(separator);
     for row in rows.iter().skip(1) {
-        if split(row, separator, SAMPLE_FIELDS, &mut fields).is_ok() {
-            n_fields += fields.len();
-            let is_number = |field: &&std::ops::Range<usize>| number(&row[(*field).clone()], separator != b',').is_ok();
-            n_numbers += fields.iter().filter(is_number).count();
+        if let Ok(fields) = splitter.split(row) {
+            n_fields += fields.len().min(SAMPLE_FIELDS);
+            let is_number = |field: &&[u8]| number(field, separator != b',').is_ok();
+            n_numbers += fields.iter().take(SAMPLE_FIELDS).filter(is_number).count();
         }
     }
     (1000 * n_numbers).checked_div(n_fields).unwrap_or(0)
