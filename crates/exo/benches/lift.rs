@@ -1,0 +1,5 @@
+//! Speed of lifts.
+
+fn main() {
+    divan::main();
+}
