@@ -5,15 +5,18 @@
 //!
 //! In reading order: [`arm`] (eqs 20–51), [`reference`], [`inverse`], [`control`] (eqs 52–55), [`plant`],
 //! [`lift`] (one lift), [`metrics`] (eqs 56–58), [`config`], [`simulation`] (a configuration and a muscle),
-//! [`reach`] (what can be said beforehand), [`study`] (many lifts).
+//! [`reach`] (what can be said beforehand), [`study`] (many lifts), [`options`] (what each option is worth),
+//! [`artifact`] (`exo-metrics/1`).
 
 pub mod arm;
+pub mod artifact;
 pub mod config;
 pub mod control;
 pub mod error;
 pub mod inverse;
 pub mod lift;
 pub mod metrics;
+pub mod options;
 pub mod plant;
 pub mod reach;
 pub mod reference;

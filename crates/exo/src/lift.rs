@@ -79,9 +79,10 @@ pub struct Instant {
 }
 
 /// Why a lift is no success.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Trouble {
     /// The muscle would have to push: its cable went slack.
+    #[error("slack at {time_s:.2} s ({q_rad:.3} rad): the muscle would have to push")]
     Slack {
         /// When, in s.
         time_s: f64,
@@ -89,6 +90,10 @@ pub enum Trouble {
         q_rad: f64,
     },
     /// The pressure that the controller wanted stayed at a limit for [`SATURATED_S`].
+    #[error(
+        "saturated from {time_s:.2} s ({q_rad:.3} rad): the {} pressure does not do for {force_n:.1} N",
+        if *high { "highest" } else { "lowest" }
+    )]
     Saturated {
         /// Since when, in s.
         time_s: f64,
@@ -100,6 +105,7 @@ pub enum Trouble {
         force_n: f64,
     },
     /// The error grew beyond the limit, or became no number.
+    #[error("given up at {time_s:.2} s: the angle is off by {error_rad:.4} rad, more than limits.diverged_rad")]
     Diverged {
         /// When, in s.
         time_s: f64,

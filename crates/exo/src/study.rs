@@ -184,12 +184,11 @@ fn draw(plan: &LiftPlan, rng: &mut Pcg64) -> Deviation {
     }
 }
 
-/// The value below which a share of `values` lies, by linear interpolation (R's type 7).
-pub fn quantile(values: &mut [f64], share: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let Some(last) = values.len().checked_sub(1) else { return f64::NAN };
+/// The value below which a share of `sorted` lies, by linear interpolation (R's type 7); NaN of nothing.
+pub fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let position = share.clamp(0.0, 1.0) * last as f64;
     let (below, inside) = (position.floor() as usize, position.fract());
     let above = (below + 1).min(last);
-    values[below] + inside * (values[above] - values[below])
+    sorted[below] + inside * (sorted[above] - sorted[below])
 }

@@ -48,6 +48,12 @@ pub enum InputRole {
     Validation,
     /// Force model.
     Model,
+    /// Force model of a simulated plant, other than the controller's.
+    Plant,
+    /// Inverse of a force model.
+    Inverse,
+    /// Configuration.
+    Configuration,
 }
 
 /// Why an artifact is refused.

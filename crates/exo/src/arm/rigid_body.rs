@@ -187,9 +187,8 @@ mod tests {
         let (mut q, mut dq) = (Vector2::new(0.5, -0.3), Vector2::new(0.2, 1.0));
         let bodies = bodies();
         let start_j = energy_j(&bodies, &q, &dq);
-        let free = |q: &Vector2<f64>, dq: &Vector2<f64>| {
-            accelerations_rad_per_s2(&bodies, q, dq, &Vector2::zeros()).unwrap()
-        };
+        let free =
+            |q: &Vector2<f64>, dq: &Vector2<f64>| accelerations_rad_per_s2(&bodies, q, dq, &Vector2::zeros()).unwrap();
         let step_s = 1e-3;
         for _ in 0..2000 {
             // Classical Runge–Kutta.

@@ -99,7 +99,9 @@ impl LiftConfig {
             lower_m: within("arm.lower_m", arm.lower_m, 0.01, 2.0)?,
             mounted_length_m: arm
                 .mounted_length_mm
-                .map(|length_mm| Ok::<f64, ConfigError>(1e-3 * within("arm.mounted_length_mm", length_mm, 10.0, 5000.0)?))
+                .map(|length_mm| {
+                    Ok::<f64, ConfigError>(1e-3 * within("arm.mounted_length_mm", length_mm, 10.0, 5000.0)?)
+                })
                 .transpose()?,
             load: Load {
                 mass_kg,
@@ -155,7 +157,8 @@ impl LiftConfig {
                 lag_compensation: controller.lag_compensation,
                 valve_lag_s: 1e-3 * within("controller.valve_lag_ms", controller.valve_lag_ms, 0.0, 5000.0)?,
                 transport_delay_s: 1e-3 * delay_ms,
-                pressure_loop_s: 1e-3 * within("controller.pressure_loop_ms", controller.pressure_loop_ms, 1.0, 5000.0)?,
+                pressure_loop_s: 1e-3
+                    * within("controller.pressure_loop_ms", controller.pressure_loop_ms, 1.0, 5000.0)?,
                 hysteresis_aware: controller.hysteresis_aware,
                 presliding_m: 1e-3 * within("controller.presliding_mm", controller.presliding_mm, 1e-3, 100.0)?,
                 payload_estimation: controller.payload_estimation,

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::LiftPlan;
 use crate::error::ConfigError;
 
 /// A configuration file; every key is explained in `configs/lift.toml`.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LiftConfig {
     pub(super) reference: ReferenceToml,
@@ -22,7 +23,7 @@ pub struct LiftConfig {
     pub(super) trials: TrialsToml,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ReferenceToml {
     pub(super) from_rad: f64,
@@ -33,7 +34,7 @@ pub(super) struct ReferenceToml {
     pub(super) settle_s: f64,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ArmToml {
     pub(super) upper_m: f64,
@@ -45,7 +46,7 @@ pub(super) struct ArmToml {
     pub(super) mounted_length_mm: Option<f64>,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LoadToml {
     pub(super) mass_kg: f64,
@@ -53,7 +54,7 @@ pub(super) struct LoadToml {
     pub(super) true_mass_kg: Option<f64>,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PlantToml {
     pub(super) step_ms: f64,
@@ -64,14 +65,14 @@ pub(super) struct PlantToml {
     pub(super) damping_n_m_s: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum ValveKindToml {
     Proportional,
     OnOff,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ValveToml {
     pub(super) kind: ValveKindToml,
@@ -86,7 +87,7 @@ pub(super) struct ValveToml {
     pub(super) shortest_pulse_ms: f64,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SensorsToml {
     pub(super) angle_noise_mrad: f64,
@@ -95,14 +96,14 @@ pub(super) struct SensorsToml {
     pub(super) pressure_step_kpa: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum LengthToml {
     Measured,
     Reference,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ControllerToml {
     pub(super) period_ms: f64,
@@ -120,13 +121,13 @@ pub(super) struct ControllerToml {
     pub(super) payload_estimation: bool,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LimitsToml {
     pub(super) diverged_rad: f64,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TrialsToml {
     pub(super) payload_percent: f64,
@@ -139,14 +140,16 @@ pub(super) struct TrialsToml {
 }
 
 impl LiftConfig {
-    /// Reads and checks a configuration file.
+    /// Reads and checks a configuration file: as written, as checked, and its text.
     ///
     /// # Errors
     /// [`ConfigError`] names the file, and the key or the line, and what to do.
-    pub fn read(path: &Path) -> Result<LiftPlan, ConfigError> {
+    pub fn read(path: &Path) -> Result<(Self, LiftPlan, String), ConfigError> {
         let text =
             std::fs::read_to_string(path).map_err(|reason| ConfigError::Read { path: path.to_owned(), reason })?;
-        Self::parse(&text, path)?.check(path)
+        let config = Self::parse(&text, path)?;
+        let plan = config.clone().check(path)?;
+        Ok((config, plan, text))
     }
 
     /// Parses the text of a configuration; `path` is for messages.

@@ -160,8 +160,7 @@ impl<'a> Controller<'a> {
         };
         let (sine, cosine) = q_rad.sin_cos();
         let there = knowledge.lever.at(sine, cosine);
-        let torque_n_m =
-            self.elbow.inertia_kg_m2 * acceleration + carried[1] * self.elbow.gravity_n_m(sine, cosine);
+        let torque_n_m = self.elbow.inertia_kg_m2 * acceleration + carried[1] * self.elbow.gravity_n_m(sine, cosine);
         let force_n = (torque_n_m / there.moment_arm_m).max(0.0);
         let direction = if settings.hysteresis_aware {
             self.friction.after(self.followed_m - there.length_m)

@@ -33,8 +33,12 @@ impl Dahl {
     pub fn after(&self, travel_m: f64) -> f64 {
         let end = if travel_m > 0.0 { 1.0 } else { -1.0 };
         let share = travel_m.abs() * self.inverse_m;
-        // A step of the plant is a thousandth of δ: three terms are exact to 1e-13 there.
-        let kept = if share < 1e-3 { 1.0 - share * (1.0 - share * (0.5 - share / 6.0)) } else { (-share).exp() };
+        // A step of the plant is a hundredth of δ, where five terms are exact to 1e-13.
+        let kept = if share < 0.02 {
+            1.0 - share * (1.0 - share * (0.5 - share * (1.0 / 6.0 - share * (1.0 / 24.0 - share / 120.0))))
+        } else {
+            (-share).exp()
+        };
         end + (self.state - end) * kept
     }
 
