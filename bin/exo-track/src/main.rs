@@ -2,6 +2,7 @@
 
 mod args;
 mod figure;
+mod network;
 mod run;
 mod tables;
 mod track;

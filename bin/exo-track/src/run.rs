@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use pam_cli::{Console, Output, Verdict, commit_all};
-use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
+use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool, sha256_hex};
+use pam_core::force::ForceModel;
 use pam_exo::artifact::{ArmMetrics, MetricsArtifact, SCHEMA, TrialMetrics, paper};
 use pam_exo::config::{LiftConfig, LiftPlan};
 use pam_exo::inverse::{ExactInverse, Inverse};
@@ -14,8 +15,10 @@ use pam_exo::reach::check_reach;
 use pam_exo::simulation::Simulation;
 use pam_exo::study::{Study, run_study};
 use pam_exo::uncertainty::Uncertainty;
+use pam_inverse_model::InverseNetwork;
 
 use crate::args::Args;
+use crate::network::Network;
 use crate::{figure, tables, track};
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
@@ -151,12 +154,16 @@ fn read_model(path: &Path, role: InputRole) -> anyhow::Result<(ModelArtifact, In
 fn read_inverse(
     args: &Args,
     plan: &LiftPlan,
-    force: &pam_core::force::ForceModel,
+    force: &ForceModel,
     inputs: &mut Vec<Input>,
 ) -> anyhow::Result<Box<dyn Inverse>> {
-    let _ = (&args.inverse, &inputs);
-    let [lowest_pa, highest_pa] = plan.control.pressure_limits_pa;
-    Ok(Box::new(ExactInverse::new(force.clone(), lowest_pa, highest_pa)))
+    let Some(path) = &args.inverse else {
+        let [lowest_pa, highest_pa] = plan.control.pressure_limits_pa;
+        return Ok(Box::new(ExactInverse::new(force.clone(), lowest_pa, highest_pa)));
+    };
+    let (artifact, sha256) = InverseArtifact::read(path)?;
+    inputs.push(Input { path: path.display().to_string(), sha256, role: InputRole::Inverse });
+    Ok(Box::new(Network(InverseNetwork::from_artifact(&artifact))))
 }
 
 /// Says where the lift leaves what the model was identified on.

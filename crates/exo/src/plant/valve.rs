@@ -91,9 +91,8 @@ impl Valve {
             ValveKind::Proportional => {
                 let wanted_pa = (command_pa - pressure_pa) * self.share_of_step;
                 let rate = self.step_s * BladderGas::stiffness_pa_per_kg(volume_m3);
-                // Far from its limits, where it almost always is, the valve needs no root.
-                let plenty_pa = rate * self.flow(wanted_pa > 0.0, pressure_pa);
-                pressure_pa + wanted_pa.clamp(-plenty_pa, plenty_pa)
+                let most_pa = rate * self.flow(wanted_pa > 0.0, pressure_pa);
+                pressure_pa + wanted_pa.clamp(-most_pa, most_pa)
             }
             ValveKind::OnOff => self.switch(pressure_pa, command_pa, volume_m3),
         }

@@ -135,12 +135,12 @@ fn panels(figure: &LiftFigure) -> Vec<PanelData> {
     panels.push(PanelData {
         title: "Pressure in the muscles",
         axis: "pressure (kPa)",
-        curves: commanded("command, left", |arm| &arm.command_kpa, |arm| &arm.pressure_kpa),
+        curves: commanded("command", |arm| &arm.command_kpa, |arm| &arm.pressure_kpa),
     });
     panels.push(PanelData {
         title: "Tension of the muscles",
         axis: "tension (N)",
-        curves: commanded("asked for, left", |arm| &arm.command_force_n, |arm| &arm.force_n),
+        curves: commanded("command", |arm| &arm.command_force_n, |arm| &arm.force_n),
     });
     let lengths: [(&str, &str, fn(&LiftArm) -> &Vec<f64>); 3] = [
         ("Deformation of the muscles", "length less that at the start (mm)", |arm| &arm.deformation_mm),
