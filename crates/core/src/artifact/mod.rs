@@ -3,8 +3,10 @@
 //! Every artifact begins with `schema`, `tool`, `inputs`, `config` and `seed`. Equal inputs give equal bytes on
 //! any thread count; time stamps stay out.
 
+pub mod inverse;
 pub mod model;
 
+pub use inverse::InverseArtifact;
 pub use model::ModelArtifact;
 
 use std::path::{Path, PathBuf};
@@ -46,8 +48,16 @@ pub enum InputRole {
     Estimation,
     /// Recording that was held out.
     Validation,
+    /// Recording whose pressures, lengths and directions a network was trained at.
+    Training,
     /// Force model.
     Model,
+    /// Force model of a simulated plant, other than the controller's.
+    Plant,
+    /// Inverse of a force model.
+    Inverse,
+    /// Configuration.
+    Configuration,
 }
 
 /// Why an artifact is refused.

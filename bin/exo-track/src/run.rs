@@ -1,0 +1,198 @@
+//! Files in, track, metrics and figures out.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use pam_cli::{Console, Output, Verdict, commit_all};
+use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool, sha256_hex};
+use pam_core::force::ForceModel;
+use pam_exo::artifact::{ArmMetrics, MetricsArtifact, SCHEMA, TrialMetrics, paper};
+use pam_exo::config::{LiftConfig, LiftPlan};
+use pam_exo::inverse::{ExactInverse, Inverse};
+use pam_exo::lift::{Instant, Outcome};
+use pam_exo::options::compare_options;
+use pam_exo::reach::check_reach;
+use pam_exo::simulation::Simulation;
+use pam_exo::study::{Study, run_study};
+use pam_exo::uncertainty::Uncertainty;
+use pam_inverse_model::InverseNetwork;
+
+use crate::args::Args;
+use crate::network::Network;
+use crate::{figure, tables, track};
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
+    let console = args.run.start()?;
+    let outputs = Outputs::open(args)?;
+    let (config, plan, config_input) = read_config(&args.config)?;
+    let (model, model_input) = read_model(&args.model, InputRole::Model)?;
+    let mut inputs = vec![config_input, model_input];
+    let plant = args.plant.as_deref().map(|path| read_model(path, InputRole::Plant)).transpose()?;
+    let force = model.force_model();
+    let inverse = read_inverse(args, &plan, &force, &mut inputs)?;
+    let plant_artifact = plant.as_ref().map_or(&model, |(artifact, _)| artifact);
+    let plant_force = plant_artifact.force_model();
+    inputs.extend(plant.iter().map(|(_, input)| input.clone()));
+    let simulation = Simulation { plan: &plan, model: &force, inverse: inverse.as_ref(), plant: &plant_force };
+    check_reach(&simulation).with_context(|| args.config.display().to_string())?;
+    let uncertainty = match args.trials {
+        Some(_) if plan.spreads.model_parameters => {
+            let path = args.plant.as_ref().unwrap_or(&args.model);
+            Some(Uncertainty::new(plant_artifact).with_context(|| path.display().to_string())?)
+        }
+        _ => None,
+    };
+    if args.run.check {
+        console.note("inputs are fine and the reference is within reach; nothing was simulated (--check)");
+        return Ok(Verdict::Accepted);
+    }
+
+    let mut arms: [Vec<Instant>; 2] = Default::default();
+    let outcomes = simulation.run_nominal(args.run.seed, |arm, instant| arms[arm].push(*instant));
+    warn_outside(&console, &model, &arms);
+    let [left, right] = outcomes.map(|outcome| ArmMetrics::of(&outcome));
+    console.text(tables::errors(&left.errors, &right.errors, &paper()));
+    if args.compare_options {
+        console.text(tables::options(&compare_options(&simulation, args.run.seed)));
+    }
+    let study = args.trials.map(|n_trials| {
+        let progress = console.progress("lifting", n_trials);
+        run_study(&simulation, uncertainty.as_ref(), n_trials, args.run.seed, |steps| progress.advance(steps))
+    });
+    let trials = study.as_ref().map(TrialMetrics::of);
+    if let Some(trials) = &trials {
+        console.text(tables::trials(trials));
+    }
+    let artifact = MetricsArtifact {
+        schema: SCHEMA.to_owned(),
+        tool: Tool { name: "exo-track".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        inputs,
+        config,
+        seed: args.run.seed,
+        left,
+        right,
+        paper: paper(),
+        trials,
+    };
+    outputs.write(&console, &arms, &artifact, &plan, study.as_ref())?;
+    Ok(verdict(&console, &outcomes))
+}
+
+/// What the run writes.
+struct Outputs {
+    track: Option<Output>,
+    metrics: Option<Output>,
+    figure: Option<Output>,
+    trials_figure: Option<Output>,
+}
+
+impl Outputs {
+    /// Opens every output before anything is computed.
+    fn open(args: &Args) -> anyhow::Result<Self> {
+        let inputs = [Some(&args.config), Some(&args.model), args.inverse.as_ref(), args.plant.as_ref()];
+        let open = |path: &Option<PathBuf>| {
+            path.as_deref()
+                .filter(|_| !args.run.check)
+                .map(|path| Output::open(path)?.apart_from(inputs.iter().flatten()))
+                .transpose()
+        };
+        Ok(Self {
+            track: open(&args.out)?,
+            metrics: open(&args.metrics)?,
+            figure: open(&args.figure)?,
+            trials_figure: open(&args.trials_figure)?,
+        })
+    }
+
+    /// Publishes everything together.
+    fn write(
+        self,
+        console: &Console,
+        arms: &[Vec<Instant>; 2],
+        artifact: &MetricsArtifact,
+        plan: &LiftPlan,
+        study: Option<&Study>,
+    ) -> anyhow::Result<()> {
+        let mut outputs = Vec::new();
+        if let Some(output) = self.track {
+            outputs.push((output, track::csv(arms).into_bytes()));
+        }
+        if let Some(output) = self.metrics {
+            let mut json = serde_json::to_vec_pretty(artifact)?;
+            json.push(b'\n');
+            outputs.push((output, json));
+        }
+        if let Some(output) = self.figure {
+            outputs.push((output, figure::lift(arms, artifact)?.into_bytes()));
+        }
+        if let (Some(output), Some(study), Some(trials)) = (self.trials_figure, study, &artifact.trials) {
+            outputs.push((output, figure::envelope(study, trials, plan)?.into_bytes()));
+        }
+        let written: Vec<String> = outputs.iter().map(|(output, _)| output.path().display().to_string()).collect();
+        commit_all(outputs)?;
+        let files: Vec<&str> = written.iter().map(String::as_str).filter(|path| *path != "-").collect();
+        if !files.is_empty() {
+            console.note(format!("wrote {}", files.join(", ")));
+        }
+        Ok(())
+    }
+}
+
+fn read_config(path: &Path) -> anyhow::Result<(LiftConfig, LiftPlan, Input)> {
+    let (config, plan, text) = LiftConfig::read(path)?;
+    let input =
+        Input { path: path.display().to_string(), sha256: sha256_hex(text.as_bytes()), role: InputRole::Configuration };
+    Ok((config, plan, input))
+}
+
+fn read_model(path: &Path, role: InputRole) -> anyhow::Result<(ModelArtifact, Input)> {
+    let (artifact, sha256) = ModelArtifact::read(path)?;
+    Ok((artifact, Input { path: path.display().to_string(), sha256, role }))
+}
+
+/// The inverse in a file, or that by root finding.
+fn read_inverse(
+    args: &Args,
+    plan: &LiftPlan,
+    force: &ForceModel,
+    inputs: &mut Vec<Input>,
+) -> anyhow::Result<Box<dyn Inverse>> {
+    let Some(path) = &args.inverse else {
+        let [lowest_pa, highest_pa] = plan.control.pressure_limits_pa;
+        return Ok(Box::new(ExactInverse::new(force.clone(), lowest_pa, highest_pa)));
+    };
+    let (artifact, sha256) = InverseArtifact::read(path)?;
+    inputs.push(Input { path: path.display().to_string(), sha256, role: InputRole::Inverse });
+    Ok(Box::new(Network(InverseNetwork::from_artifact(&artifact))))
+}
+
+/// Says where the lift leaves what the model was identified on.
+fn warn_outside(console: &Console, model: &ModelArtifact, arms: &[Vec<Instant>; 2]) {
+    let check = |name: &str, unit: &str, scale: f64, domain: [f64; 2], value: fn(&Instant) -> f64| {
+        let values = || arms.iter().flatten().map(value);
+        let (lowest, highest) = (values().fold(f64::MAX, f64::min), values().fold(f64::MIN, f64::max));
+        if lowest < domain[0] || highest > domain[1] {
+            console.warn(format!(
+                "the lift uses a {name} of {:.1} to {:.1} {unit}, and the model was identified on {:.1} to {:.1} {unit}: \
+                 it extrapolates; record bench data there",
+                scale * lowest,
+                scale * highest,
+                scale * domain[0],
+                scale * domain[1]
+            ));
+        }
+    };
+    check("pressure", "kPa", 1e-3, model.domain.pressure_pa, |instant| instant.pressure_pa);
+    check("length", "mm", 1e3, model.domain.length_m, |instant| instant.length_m);
+}
+
+fn verdict(console: &Console, outcomes: &[Outcome; 2]) -> Verdict {
+    let mut verdict = Verdict::Accepted;
+    for (arm, outcome) in ["left", "right"].iter().zip(outcomes) {
+        for trouble in outcome.troubles.iter().flatten() {
+            console.warn(format!("rejected: {arm} arm {trouble}"));
+            verdict = Verdict::Rejected;
+        }
+    }
+    verdict
+}

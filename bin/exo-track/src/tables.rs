@@ -1,0 +1,72 @@
+//! What a person reads of a lift.
+
+use pam_exo::artifact::{Quantiles, TrialMetrics};
+use pam_exo::metrics::{SignalErrors, TrackingErrors};
+use pam_exo::options::{CASES, Variant};
+use pam_report::Table;
+
+/// The paper's Table 2 with ours beside it.
+pub(crate) fn errors(left: &TrackingErrors, right: &TrackingErrors, paper: &TrackingErrors) -> String {
+    let mut table = Table::new(["", "", "MAX", "MAE", "RMSE", "ITAE", "Σ t |e|"]);
+    let signals: [(&str, fn(&TrackingErrors) -> SignalErrors); 3] = [
+        ("angle (rad)", |errors| errors.angle_rad),
+        ("angular velocity (rad/s)", |errors| errors.velocity_rad_per_s),
+        ("angular acceleration (rad/s²)", |errors| errors.acceleration_rad_per_s2),
+    ];
+    for (name, signal) in signals {
+        let mut name = name;
+        for (arm, errors) in [("left", left), ("right", right), ("paper", paper)] {
+            let of = signal(errors);
+            let digits = [of.max, of.mae, of.rmse, of.itae].map(|value| format!("{value:.5}"));
+            let [max, mae, rmse, itae] = digits;
+            table.row([name.to_owned(), arm.to_owned(), max, mae, rmse, itae, format!("{:.4}", of.itae_sum)]);
+            name = "";
+        }
+    }
+    format!(
+        "Errors of the lift beside the paper's Table 2 (ITAE is the integral of t |e| dt, times s² to the signal's unit; \
+         the paper prints the plain sum of t |e| over its samples as ITAE, which is 1/dt = 100 times as much)\n{}",
+        table.to_terminal()
+    )
+}
+
+/// Quantiles of a study.
+pub(crate) fn trials(trials: &TrialMetrics) -> String {
+    let mut table = Table::new(["angle error (rad)", "median", "90 %", "95 %", "99 %", "largest"]);
+    let mut row = |name: &str, quantiles: &Quantiles| {
+        let values = [quantiles.p50, quantiles.p90, quantiles.p95, quantiles.p99, quantiles.largest];
+        table.row([name.to_owned()].into_iter().chain(values.map(|value| format!("{value:.5}"))));
+    };
+    row("MAX", &trials.max_rad);
+    row("MAE", &trials.mae_rad);
+    row("RMSE", &trials.rmse_rad);
+    let share = |count: u64| {
+        let percent = 100.0 * count as f64 / trials.n_trials as f64;
+        format!("{count} ({percent:.2} %)")
+    };
+    format!(
+        "{} trials, the worse arm of each: slack {}, saturated {}, given up {}\n{}",
+        trials.n_trials,
+        share(trials.n_slack),
+        share(trials.n_saturated),
+        share(trials.n_diverged),
+        table.to_terminal()
+    )
+}
+
+/// What each option is worth.
+pub(crate) fn options(variants: &[Variant]) -> String {
+    let mut table = Table::new(["controller"].into_iter().chain(CASES));
+    for variant in variants {
+        let cells = variant.cases.map(|case| {
+            let mark = if case.troubled { " !" } else { "" };
+            format!("{:.2} / {:.2}{mark}", 1e3 * case.max_rad, 1e3 * case.rmse_rad)
+        });
+        table.row([variant.name.clone()].into_iter().chain(cells));
+    }
+    format!(
+        "What each option is worth: MAX / RMSE of the angle in mrad, over 5 seeds and both arms (! saturated, slack or \
+         given up)\n{}",
+        table.to_terminal()
+    )
+}

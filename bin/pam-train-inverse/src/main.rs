@@ -1,0 +1,10 @@
+//! Train the inverse of an identified muscle: force, length and direction to pressure.
+
+mod args;
+mod figure;
+mod run;
+mod tables;
+
+fn main() -> std::process::ExitCode {
+    pam_cli::main_with_schema::<args::Args, pam_core::artifact::InverseArtifact>(run::run)
+}

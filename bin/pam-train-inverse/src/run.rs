@@ -1,0 +1,163 @@
+//! Files in, network out.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, ensure};
+use pam_cli::{Console, Output, Verdict, commit_all};
+use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool};
+use pam_core::recording::{ReadOptions, Recording, read_recording};
+use pam_inverse_model::report::{Outcome, Prepared};
+
+use crate::args::{ActivationArg, Args};
+use crate::{figure, tables};
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
+    let console = args.run.start()?;
+    check_numbers(args)?;
+    let from_stdin = args.logs.iter().filter(|path| path.as_os_str() == "-").count();
+    ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
+    let inputs = || args.logs.iter().chain([&args.model]);
+    let open = |path: &Path| Output::open(path)?.apart_from(inputs());
+    let out = args.out.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
+    let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
+
+    let (model, sha256) = ModelArtifact::read(&args.model)?;
+    let mut hashes = vec![Input { path: args.model.display().to_string(), sha256, role: InputRole::Model }];
+    let recordings = read_all(args, &console)?;
+    hashes.extend(recordings.iter().map(|recording| Input {
+        path: recording.path.clone(),
+        sha256: recording.sha256.clone(),
+        role: InputRole::Training,
+    }));
+    let config = args.config();
+    let seed = args.run.seed;
+    let prepared =
+        Prepared::new(&model, &recordings, &config, seed).with_context(|| args.model.display().to_string())?;
+    if prepared.n_rows_excluded() > 0 {
+        console.warn(format!(
+            "{} rows of the recordings are left out: outside the model's domain, or without an inverse",
+            prepared.n_rows_excluded()
+        ));
+    }
+    if args.run.check {
+        console.note(format!("inputs are fine: {} points to train at (--check)", prepared.points().len()));
+        return Ok(Verdict::Accepted);
+    }
+    let progress = console.progress("training", (config.n_starts * config.n_epochs) as u64);
+    let start = Instant::now();
+    let outcome = prepared.train(&config, seed, &|| progress.advance(1))?;
+    let training_time = start.elapsed();
+    drop(progress);
+    let tool = Tool { name: "pam-train-inverse".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
+    let artifact = outcome
+        .artifact(&prepared, tool, hashes, config, seed)
+        .context("no point of the domain can be judged; widen the domain")?;
+
+    console.text(tables::training(&artifact, training_time));
+    console.text(tables::errors(&artifact));
+    console.text(tables::regions(&artifact));
+    console.text(tables::inverses(&artifact, &time(&outcome, &prepared)));
+    for warning in &artifact.warnings {
+        console.warn(warning);
+    }
+    write(&console, &artifact, &outcome, &prepared, out, figure_out)?;
+    let error = artifact.errors.pressure_rmse_percent;
+    if error > args.max_error_percent {
+        let limit = args.max_error_percent;
+        console
+            .warn(format!("rejected: RMSE {error:.3} % of the range of pressure is above --max-error-percent {limit}"));
+        return Ok(Verdict::Rejected);
+    }
+    Ok(Verdict::Accepted)
+}
+
+fn check_numbers(args: &Args) -> anyhow::Result<()> {
+    let share = args.validation_share;
+    ensure!(share > 0.0 && share <= 0.9, "--validation-share {share} is outside 0 to 0.9");
+    for (name, value) in [
+        ("--max-error-percent", args.max_error_percent),
+        ("--learning-rate", args.learning_rate),
+        ("--min-slope-percent", args.min_slope_percent),
+    ] {
+        ensure!(value > 0.0 && value.is_finite(), "{name} {value} is not a positive number");
+    }
+    let goal = args.goal_percent;
+    ensure!(goal >= 0.0 && goal.is_finite(), "--goal-percent {goal} is negative");
+    ensure!(args.activation != ActivationArg::Linear, "--activation linear makes no network; take tanh or sigmoid");
+    ensure!(args.points > 0 || !args.logs.is_empty(), "--points 0 leaves nothing to train at; name a recording");
+    Ok(())
+}
+
+fn read_all(args: &Args, console: &Console) -> anyhow::Result<Vec<Recording>> {
+    let options = ReadOptions { force_required: false, ..args.read.options() };
+    let mut recordings = Vec::new();
+    for path in &args.logs {
+        let recording = read_recording(path, &options)?;
+        for note in recording.repairs.notes() {
+            console.warn(format!("{}: {note}", recording.path));
+        }
+        recordings.push(recording);
+    }
+    Ok(recordings)
+}
+
+/// What the network is compared with, over points that were judged.
+pub(crate) struct Timing {
+    /// One evaluation of the network.
+    pub(crate) network: Duration,
+    /// One root found on the model.
+    pub(crate) exact: Duration,
+    /// Largest error of the root, in Pa.
+    pub(crate) exact_max_pa: f64,
+}
+
+/// Times both inverses on the points that were judged.
+fn time(outcome: &Outcome, prepared: &Prepared) -> Timing {
+    let points = || outcome.judged.iter().map(|judged| judged.point).take(20_000);
+    let n = u32::try_from(points().count()).unwrap_or(u32::MAX).max(1);
+    let start = Instant::now();
+    let mut sum = 0.0;
+    for point in points() {
+        sum += outcome.network.pressure_pa(point.force_n, point.length_m, point.direction).pressure_pa;
+    }
+    std::hint::black_box(sum);
+    let network = start.elapsed() / n;
+    let start = Instant::now();
+    let mut exact_max_pa = 0.0_f64;
+    for point in points() {
+        if let Ok(pressure_pa) = prepared.exact().pressure_pa(point.force_n, point.length_m, point.direction) {
+            exact_max_pa = exact_max_pa.max((pressure_pa - point.pressure_pa).abs());
+        }
+    }
+    Timing { network, exact: start.elapsed() / n, exact_max_pa }
+}
+
+/// Publishes network and figure together.
+fn write(
+    console: &Console,
+    artifact: &InverseArtifact,
+    outcome: &Outcome,
+    prepared: &Prepared,
+    out: Option<Output>,
+    figure_out: Option<Output>,
+) -> anyhow::Result<()> {
+    let mut outputs = Vec::new();
+    let mut written = Vec::new();
+    if let Some(output) = figure_out {
+        written.push(output.path().display().to_string());
+        outputs.push((output, figure::svg(artifact, outcome, prepared)?.into_bytes()));
+    }
+    if let Some(output) = out {
+        let mut json = serde_json::to_vec_pretty(artifact)?;
+        json.push(b'\n');
+        written.insert(0, output.path().display().to_string());
+        outputs.push((output, json));
+    }
+    commit_all(outputs)?;
+    written.retain(|path| path != "-");
+    if !written.is_empty() {
+        console.note(format!("wrote {}", written.join(" and ")));
+    }
+    Ok(())
+}

@@ -1,0 +1,63 @@
+//! Points along recordings: pressures, lengths and directions as they happened, forces as the model says.
+
+use pam_core::artifact::ModelArtifact;
+use pam_core::direction::{Direction, Driver};
+use pam_core::force::Form;
+use pam_core::recording::Recording;
+
+use crate::design::Point;
+use crate::{ExactInverse, InverseError};
+
+/// Points of recordings.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Recorded {
+    /// Rows that were taken.
+    pub points: Vec<Point>,
+    /// Rows that were looked at and left out: outside the domain, or without an inverse.
+    pub n_excluded: usize,
+}
+
+/// At most about `n` rows of `recordings`, evenly spaced.
+///
+/// # Errors
+/// [`InverseError::Samples`] where samples cannot be read back.
+pub fn points(
+    recordings: &[Recording],
+    artifact: &ModelArtifact,
+    inverse: &ExactInverse,
+    n: usize,
+) -> Result<Recorded, InverseError> {
+    let n_rows: usize = recordings.iter().map(|recording| recording.samples.n_rows()).sum();
+    let every = n_rows.div_ceil(n.max(1)).max(1);
+    let driver = match artifact.form {
+        Form::Corrected => Driver::Motion,
+        Form::AsPrinted => Driver::Pressure,
+    };
+    let failed = |reason| InverseError::Samples { reason };
+    let mut recorded = Recorded::default();
+    for recording in recordings {
+        let directions = Direction::of(recording, artifact.direction, driver).map_err(failed)?;
+        for chunk in recording.samples.chunks() {
+            let chunk = chunk.map_err(failed)?;
+            let columns = chunk.rows().zip(chunk.pressure_pa()).zip(chunk.length_m());
+            for ((row, &pressure_pa), &length_m) in columns.filter(|((row, _), _)| row % every == 0) {
+                match point(inverse, pressure_pa, length_m, directions.sign(row)) {
+                    Some(point) => recorded.points.push(point),
+                    None => recorded.n_excluded += 1,
+                }
+            }
+        }
+    }
+    Ok(recorded)
+}
+
+/// The point at a pressure, if that is the pressure which the inverse gives for its force.
+fn point(inverse: &ExactInverse, pressure_pa: f64, length_m: f64, direction: f64) -> Option<Point> {
+    let [shortest_m, longest_m] = inverse.inverse_box().length_m;
+    if !(shortest_m..=longest_m).contains(&length_m) {
+        return None;
+    }
+    let [low_pa, high_pa] = inverse.branch(length_m, direction)?.pressure_pa;
+    let force_n = inverse.model().force_n(pressure_pa, length_m, direction);
+    (low_pa..=high_pa).contains(&pressure_pa).then_some(Point { pressure_pa, length_m, direction, force_n })
+}

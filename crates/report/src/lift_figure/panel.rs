@@ -1,0 +1,54 @@
+//! A panel of curves over time.
+
+use super::PanelData;
+use crate::plot::{Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, thin, title};
+
+/// Values over time.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    /// Name in the legend.
+    pub(super) text: &'static str,
+    width: f64,
+    color: Color,
+    /// One value for each instant.
+    pub(super) values: Vec<f64>,
+}
+
+impl Curve {
+    pub(super) fn new(text: &'static str, width: f64, color: Color, values: Vec<f64>) -> Self {
+        Self { text, width, color, values }
+    }
+}
+
+pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, letter: &str, data: &PanelData, time_s: &[f64]) {
+    let finite = |values: &[f64]| -> (f64, f64) {
+        values
+            .iter()
+            .filter(|value| value.is_finite())
+            .fold((f64::MAX, f64::MIN), |(low, high), &value| (low.min(value), high.max(value)))
+    };
+    let (start_s, end_s) = finite(time_s);
+    let (lowest, highest) = data
+        .curves
+        .iter()
+        .map(|curve| finite(&curve.values))
+        .fold((f64::MAX, f64::MIN), |(low, high), (lowest, highest)| (low.min(lowest), high.max(highest)));
+    let margin = 0.04 * (highest - lowest).max(0.0);
+    let x = Axis::exact("time (s)", start_s, end_s, 6);
+    let y = Axis::linear(data.axis, lowest - margin, highest + margin, 5);
+    let panel = Panel::new(cell, x, y, 16.0);
+    panel.draw_frame(canvas);
+    if panel.y.from < 0.0 && panel.y.to > 0.0 {
+        panel.line(canvas, [(panel.x.from, 0.0), (panel.x.to, 0.0)], palette::SILVER, 1.0);
+    }
+    let pixels = panel.frame.width();
+    for curve in &data.curves {
+        let kept = thin(&curve.values, (2.0 * pixels) as usize);
+        let points = kept.into_iter().filter_map(|row| Some((*time_s.get(row)?, curve.values[row])));
+        panel.line(canvas, points, curve.color, curve.width);
+    }
+    let (y, _) = title(canvas, cell, letter, data.title);
+    let keys: Vec<Key> =
+        data.curves.iter().map(|curve| Key::new(curve.text, Mark::Line(curve.width.max(1.4)), curve.color)).collect();
+    legend(canvas, &keys, panel.frame.right, y);
+}
