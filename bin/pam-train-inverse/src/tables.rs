@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use pam_core::artifact::InverseArtifact;
-use pam_core::artifact::inverse::{Ended, ErrorStatistics};
+use pam_core::artifact::inverse::{Ended, ErrorStatistics, RegionErrors};
 use pam_report::Table;
 use pam_report::number::significant;
 
@@ -69,15 +69,7 @@ pub(crate) fn regions(artifact: &InverseArtifact) -> String {
     let errors = &artifact.errors;
     let mut table = Table::new(["where", "RMSE kPa", "95 % kPa", "largest kPa", "points"]);
     for region in &errors.regions {
-        let between = |scale: f64, decimals: usize, unit: &str| {
-            format!("{:.decimals$} to {:.decimals$} {unit}", region.from * scale, region.to * scale)
-        };
-        let name = match region.coordinate.as_str() {
-            "pressure_pa" => format!("pressure {}", between(1e-3, 0, "kPa")),
-            "length_m" => format!("length {}", between(1e3, 1, "mm")),
-            _ if region.to > 0.5 => "contracting".to_owned(),
-            _ => "extending".to_owned(),
-        };
+        let name = region_name(region);
         match &region.pressure_pa {
             Some(found) => table.row([
                 name,
@@ -107,6 +99,19 @@ pub(crate) fn regions(artifact: &InverseArtifact) -> String {
         shares.invertible_percent,
         table.to_terminal()
     )
+}
+
+/// What a region is called.
+pub(crate) fn region_name(region: &RegionErrors) -> String {
+    let between = |scale: f64, decimals: usize, unit: &str| {
+        format!("{:.decimals$} to {:.decimals$} {unit}", region.from * scale, region.to * scale)
+    };
+    match region.coordinate.as_str() {
+        "pressure_pa" => format!("pressure {}", between(1e-3, 0, "kPa")),
+        "length_m" => format!("length {}", between(1e3, 1, "mm")),
+        _ if region.to > 0.5 => "contracting".to_owned(),
+        _ => "extending".to_owned(),
+    }
 }
 
 /// The network beside the root of the model.

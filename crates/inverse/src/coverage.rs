@@ -5,9 +5,9 @@ use pam_core::artifact::inverse::Coverage;
 use crate::ExactInverse;
 
 /// Lengths of the grid.
-const LENGTHS: usize = 58;
+const LENGTHS: usize = 56;
 /// Pressures of the grid.
-const PRESSURES: usize = 100;
+const PRESSURES: usize = 40;
 
 /// What the inverse is like at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -6,6 +6,9 @@ pub enum FigureError {
     /// No sample has a finite value in every column.
     #[error("no recording has a sample with finite pressure, length, force and model")]
     NothingToDraw,
+    /// No cell of an inverse has a pressure.
+    #[error("nowhere does a pressure belong to a force")]
+    NothingToInvert,
     /// Columns of one recording differ in length.
     #[error("recording {recording}: column {column} has {found} samples, expected {expected} as in time_s")]
     UnequalColumns {

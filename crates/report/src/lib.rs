@@ -4,11 +4,13 @@
 //! tables take cells and give lines. Equal input gives equal bytes.
 //!
 //! In reading order: [`number`] (how numbers are written), [`Table`], [`plot`] (what figures are made of),
-//! [`fit_figure`] (the figure of a fit), [`lift_figure`] (of a lift), [`envelope_figure`] (of many lifts).
+//! [`fit_figure()`] (the figure of a fit), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
+//! [`envelope_figure()`] (of many lifts).
 
 mod envelope_figure;
 mod error;
 mod fit_figure;
+mod inverse_figure;
 mod lift_figure;
 pub mod number;
 pub mod plot;
@@ -18,4 +20,5 @@ pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;
 pub use fit_figure::{FitFigure, FitRecording, Role, SwarmStart, fit_figure};
 pub use lift_figure::{LiftArm, LiftFigure, lift_figure};
+pub use inverse_figure::{InverseCell, InverseFigure, InverseMap, RegionBar, SlopeCell, SlopeMap, inverse_figure};
 pub use table::Table;
