@@ -127,7 +127,7 @@ fn another_language_reads_the_weights_and_agrees() {
 #[expect(clippy::print_stderr, reason = "a skipped test must be seen")]
 fn python(artifact: &Path, points: &str) -> Option<String> {
     let script: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/evaluate-inverse.py");
-    assert!(std::fs::read_to_string(&script).unwrap().lines().count() <= 30);
+    assert!(std::fs::read_to_string(&script).expect("the script").lines().count() <= 30);
     let child = Command::new("python3")
         .arg(script)
         .arg(artifact)
@@ -139,10 +139,10 @@ fn python(artifact: &Path, points: &str) -> Option<String> {
         eprintln!("SKIPPED: python3 is not there, so the example script was not run");
         return None;
     };
-    std::io::Write::write_all(&mut child.stdin.take().unwrap(), points.as_bytes()).unwrap();
-    let output = child.wait_with_output().unwrap();
+    std::io::Write::write_all(&mut child.stdin.take().expect("a pipe"), points.as_bytes()).expect("points are read");
+    let output = child.wait_with_output().expect("the script ends");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    Some(String::from_utf8(output.stdout).unwrap())
+    Some(String::from_utf8(output.stdout).expect("text"))
 }
 
 #[test]

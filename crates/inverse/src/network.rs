@@ -207,14 +207,14 @@ mod tests {
             network.forward(&inputs, &mut pass);
             let mut gradient = vec![f64::NAN; network.parameters().len()];
             network.backward(&mut pass, &seeds, &mut gradient);
-            for index in 0..gradient.len() {
+            for (index, derivative) in gradient.iter().enumerate() {
                 let shifted = |step: f64| {
                     let mut moved = network.clone();
                     moved.parameters_mut()[index] += step;
                     cost(&moved)
                 };
                 let expected = (shifted(1e-6) - shifted(-1e-6)) / 2e-6;
-                assert!((gradient[index] - expected).abs() < 1e-8, "{hidden:?} {output:?} {index}");
+                assert!((derivative - expected).abs() < 1e-8, "{hidden:?} {output:?} {index}");
             }
         }
     }
