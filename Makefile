@@ -14,9 +14,10 @@ all: cargo-is-there
 		$(DATA)/length-steps.csv --holdout $(DATA)/multisine.csv --holdout $(DATA)/lift.csv \
 		--muscle configs/muscle-nominal.toml --out $(OUT)/model.json --figure $(OUT)/fit.svg --compare-forms
 	$(BIN)/pam-predict $(DATA)/multisine.csv --model $(OUT)/model.json --out $(OUT)/predicted.csv --max-rmse-n 2
+	$(BIN)/pam-train-inverse --model $(OUT)/model.json --out $(OUT)/inverse.json --figure $(OUT)/inverse.svg
 	@echo
-	@echo "Figure: $(OUT)/fit.svg"
-	@echo "Model:  $(OUT)/model.json    Prediction: $(OUT)/predicted.csv"
+	@echo "Figures: $(OUT)/fit.svg    $(OUT)/inverse.svg"
+	@echo "Model:   $(OUT)/model.json    Prediction: $(OUT)/predicted.csv    Inverse: $(OUT)/inverse.json"
 
 test: cargo-is-there
 	@$(CARGO) test --locked --workspace

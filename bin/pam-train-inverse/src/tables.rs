@@ -37,7 +37,7 @@ fn ended(ended: Ended) -> &'static str {
     match ended {
         Ended::GoalReached => "goal reached",
         Ended::Converged => "no lower cost to be found",
-        Ended::NoBetterValidation => "validation error rose",
+        Ended::NoBetterValidation => "no better validation error",
         Ended::EpochsUsedUp => "epochs used up",
         Ended::Diverged => "weights ran away",
     }

@@ -19,6 +19,6 @@ mod table;
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;
 pub use fit_figure::{FitFigure, FitRecording, Role, SwarmStart, fit_figure};
-pub use lift_figure::{LiftArm, LiftFigure, lift_figure};
 pub use inverse_figure::{InverseCell, InverseFigure, InverseMap, RegionBar, SlopeCell, SlopeMap, inverse_figure};
+pub use lift_figure::{LiftArm, LiftFigure, lift_figure};
 pub use table::Table;
