@@ -149,8 +149,7 @@ impl<'a> Reading<'a> {
         // Numbers are what takes time, and a line needs no other: pieces in parallel, then everything that
         // depends on what came before, in order.
         let parser = &body.parser;
-        let pieces: Vec<Vec<Line>> =
-            pieces(rest).into_par_iter().map_init(|| parser.clone(), |parser, piece| lines_of(parser, piece)).collect();
+        let pieces: Vec<Vec<Line>> = pieces(rest).into_par_iter().map_init(|| parser.clone(), lines_of).collect();
         for line in pieces.into_iter().flatten() {
             self.line += 1;
             body.line(line, self.line)?;
