@@ -15,9 +15,11 @@ all: cargo-is-there
 		--muscle configs/muscle-nominal.toml --out $(OUT)/model.json --figure $(OUT)/fit.svg --compare-forms
 	$(BIN)/pam-predict $(DATA)/multisine.csv --model $(OUT)/model.json --out $(OUT)/predicted.csv --max-rmse-n 2
 	$(BIN)/pam-train-inverse --model $(OUT)/model.json --out $(OUT)/inverse.json --figure $(OUT)/inverse.svg
+	$(BIN)/exo-track --config configs/lift.toml --model $(OUT)/model.json --inverse $(OUT)/inverse.json \
+		--out $(OUT)/track.csv --metrics $(OUT)/metrics.json --figure $(OUT)/lift.svg
 	@echo
-	@echo "Figures: $(OUT)/fit.svg    $(OUT)/inverse.svg"
-	@echo "Model:   $(OUT)/model.json    Prediction: $(OUT)/predicted.csv    Inverse: $(OUT)/inverse.json"
+	@echo "Figures:   $(OUT)/fit.svg, $(OUT)/inverse.svg, $(OUT)/lift.svg"
+	@echo "Artifacts: $(OUT)/model.json, $(OUT)/predicted.csv, $(OUT)/inverse.json, $(OUT)/track.csv, $(OUT)/metrics.json"
 
 test: cargo-is-there
 	@$(CARGO) test --locked --workspace
