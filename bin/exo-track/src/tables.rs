@@ -5,10 +5,13 @@ use pam_exo::metrics::{SignalErrors, TrackingErrors};
 use pam_exo::options::{CASES, Variant};
 use pam_report::Table;
 
+/// One signal of the errors of an arm.
+type Pick = fn(&TrackingErrors) -> SignalErrors;
+
 /// The paper's Table 2 with ours beside it.
 pub(crate) fn errors(left: &TrackingErrors, right: &TrackingErrors, paper: &TrackingErrors) -> String {
     let mut table = Table::new(["", "", "MAX", "MAE", "RMSE", "ITAE", "Σ t |e|"]);
-    let signals: [(&str, fn(&TrackingErrors) -> SignalErrors); 3] = [
+    let signals: [(&str, Pick); 3] = [
         ("angle (rad)", |errors| errors.angle_rad),
         ("angular velocity (rad/s)", |errors| errors.velocity_rad_per_s),
         ("angular acceleration (rad/s²)", |errors| errors.acceleration_rad_per_s2),

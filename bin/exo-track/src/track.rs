@@ -4,8 +4,11 @@ use std::fmt::Write as _;
 
 use pam_exo::lift::Instant;
 
+/// One signal of an instant.
+type Signal = fn(&Instant) -> f64;
+
 /// Signals of one arm: name with unit, and where it is.
-const SIGNALS: [(&str, fn(&Instant) -> f64); 21] = [
+const SIGNALS: [(&str, Signal); 21] = [
     ("angle_rad", |i| i.state.q_rad),
     ("velocity_rad_per_s", |i| i.state.dq_rad_per_s),
     ("acceleration_rad_per_s2", |i| i.state.ddq_rad_per_s2),

@@ -3,7 +3,7 @@
 //! Conventions: SI; the elbow's angle is 0 where the forearm is level, positive upward; torque is positive
 //! upward; pressure is gauge. Nothing here prints or reads a clock; random numbers come from streams handed in.
 //!
-//! In reading order: [`arm`] (eqs 20–51), [`reference`], [`inverse`], [`control`] (eqs 52–55), [`plant`],
+//! In reading order: [`arm`] (eqs 20–51), [`mod@reference`], [`inverse`], [`control`] (eqs 52–55), [`plant`],
 //! [`lift`] (one lift), [`metrics`] (eqs 56–58), [`config`], [`simulation`] (a configuration and a muscle),
 //! [`reach`] (what can be said beforehand), [`study`] (many lifts), [`options`] (what each option is worth),
 //! [`artifact`] (`exo-metrics/1`).

@@ -196,7 +196,7 @@ impl Lift<'_> {
             }
             let error_rad = self.reference.at(time_s).q_rad - plant.q_rad;
             // Written so that an error that is no number ends the lift, too.
-            if !(error_rad.abs() <= self.diverged_rad) {
+            if error_rad.is_nan() || error_rad.abs() > self.diverged_rad {
                 watcher.diverged = Some(Trouble::Diverged { time_s, error_rad });
                 break;
             }

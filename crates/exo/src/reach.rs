@@ -30,7 +30,7 @@ pub fn check_reach(simulation: &Simulation<'_>) -> Result<(), ReachError> {
             let available_n = force.force_n(highest_pa, there.length_m, direction);
             let length_mm = 1e3 * there.length_m;
             // Written so that a force that is no number is out of reach.
-            if !(available_n >= needed_n) {
+            if available_n.is_nan() || available_n < needed_n {
                 let highest_kpa = 1e-3 * highest_pa;
                 return Err(ReachError::TooWeak {
                     q_rad: at.q_rad,
@@ -42,7 +42,7 @@ pub fn check_reach(simulation: &Simulation<'_>) -> Result<(), ReachError> {
                 });
             }
             let available_n = force.force_n(lowest_pa, there.length_m, direction);
-            if !(available_n <= needed_n) {
+            if available_n.is_nan() || available_n > needed_n {
                 let lowest_kpa = 1e-3 * lowest_pa;
                 return Err(ReachError::TooStrong {
                     q_rad: at.q_rad,

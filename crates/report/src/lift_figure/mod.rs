@@ -92,12 +92,15 @@ struct PanelData {
     curves: Vec<Curve>,
 }
 
+/// One signal of an arm.
+type Signal = fn(&LiftArm) -> &Vec<f64>;
+
 fn panels(figure: &LiftFigure) -> Vec<PanelData> {
     let [left, right] = &figure.arms;
     let pair = |column: fn(&LiftArm) -> &Vec<f64>| {
         [Curve::new("left", 2.0, LEFT, column(left).clone()), Curve::new("right", 1.0, RIGHT, column(right).clone())]
     };
-    let states: [(&str, &str, &str, &str, f64, fn(&LiftArm) -> &Vec<f64>); 3] = [
+    let states: [(&str, &str, &str, &str, f64, Signal); 3] = [
         ("Angle of the elbows", "angle (rad)", "Error of the angle", "error (mrad)", 1e3, |arm| &arm.angle_rad),
         ("Angular velocity", "velocity (rad/s)", "Error of the velocity", "error (mrad/s)", 1e3, |arm| {
             &arm.velocity_rad_per_s
@@ -142,7 +145,7 @@ fn panels(figure: &LiftFigure) -> Vec<PanelData> {
         axis: "tension (N)",
         curves: commanded("command", |arm| &arm.command_force_n, |arm| &arm.force_n),
     });
-    let lengths: [(&str, &str, fn(&LiftArm) -> &Vec<f64>); 3] = [
+    let lengths: [(&str, &str, Signal); 3] = [
         ("Deformation of the muscles", "length less that at the start (mm)", |arm| &arm.deformation_mm),
         ("Velocity of the length", "velocity (mm/s)", |arm| &arm.length_rate_mm_per_s),
         ("Acceleration of the length", "acceleration (mm/s²)", |arm| &arm.length_acceleration_mm_per_s2),
