@@ -14,6 +14,8 @@
 //! Source: Demmel, Grigori, Hoemmen and Langou (2012), "Communication-optimal parallel and sequential QR
 //! and LU factorizations", SIAM J. Scientific Computing 34(1).
 
+use pulp::Arch;
+
 /// Rows folded at a time: a block of 16 columns stays within 64 kB.
 pub const BLOCK_ROWS: usize = 512;
 
@@ -73,28 +75,9 @@ impl Summary {
     /// Householder reflections that mix row `j` of the triangle with the whole block and leave the block
     /// zero in column `j`; the other rows of the triangle are zero there already.
     fn annihilate(&mut self, block: &mut [f64], n_rows: usize) {
-        for pivot in 0..self.width {
-            let (head, tail) = block.split_at_mut((pivot + 1) * n_rows);
-            let vector = &head[pivot * n_rows..];
-            let squares = dot(vector, vector);
-            if squares <= 0.0 {
-                continue;
-            }
-            let diagonal = self.triangle[pivot * self.width + pivot];
-            let norm = (diagonal * diagonal + squares).sqrt();
-            let reflected = if diagonal > 0.0 { -norm } else { norm };
-            let first = diagonal - reflected;
-            let scale = 2.0 / (first * first + squares);
-            self.triangle[pivot * self.width + pivot] = reflected;
-            for (offset, column) in tail.chunks_exact_mut(n_rows).enumerate() {
-                let entry = &mut self.triangle[pivot * self.width + pivot + 1 + offset];
-                let factor = scale * (first * *entry + dot(vector, column));
-                *entry -= factor * first;
-                for (value, &component) in column.iter_mut().zip(vector) {
-                    *value -= factor * component;
-                }
-            }
-        }
+        // The widest vectors that the processor has. Sums have fixed lanes and nothing is fused, so that every
+        // processor gives the same bits.
+        Arch::new().dispatch(|| reflect(&mut self.triangle, self.width, block, n_rows));
     }
 
     /// `‖y - X w‖²` for weights `w` (`n_columns` of them).
@@ -135,7 +118,35 @@ impl Summary {
     }
 }
 
+/// The work of [`Summary::annihilate`], inlined where the vectors are wide.
+#[inline(always)]
+fn reflect(triangle: &mut [f64], width: usize, block: &mut [f64], n_rows: usize) {
+    for pivot in 0..width {
+        let (head, tail) = block.split_at_mut((pivot + 1) * n_rows);
+        let vector = &head[pivot * n_rows..];
+        let squares = dot(vector, vector);
+        if squares <= 0.0 {
+            continue;
+        }
+        let diagonal = triangle[pivot * width + pivot];
+        let norm = (diagonal * diagonal + squares).sqrt();
+        let reflected = if diagonal > 0.0 { -norm } else { norm };
+        let first = diagonal - reflected;
+        let scale = 2.0 / (first * first + squares);
+        triangle[pivot * width + pivot] = reflected;
+        for (offset, column) in tail.chunks_exact_mut(n_rows).enumerate() {
+            let entry = &mut triangle[pivot * width + pivot + 1 + offset];
+            let factor = scale * (first * *entry + dot(vector, column));
+            *entry -= factor * first;
+            for (value, &component) in column.iter_mut().zip(vector) {
+                *value -= factor * component;
+            }
+        }
+    }
+}
+
 /// Scalar product in eight partial sums, which the compiler can keep in vector registers.
+#[inline(always)]
 fn dot(left: &[f64], right: &[f64]) -> f64 {
     const LANES: usize = 8;
     let mut sums = [0.0; LANES];
