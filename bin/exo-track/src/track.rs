@@ -54,7 +54,10 @@ pub(crate) fn csv(arms: &[Vec<Instant>; 2]) -> String {
         for arm in arms {
             for (_, signal) in SIGNALS {
                 // Nine significant digits: finer than any sensor, and the same on every machine.
-                let _ = arm.get(row).map_or(write!(text, ","), |instant| write!(text, ",{}", tidy(signal(instant))));
+                let _ = match arm.get(row) {
+                    Some(instant) => write!(text, ",{}", tidy(signal(instant))),
+                    None => write!(text, ","),
+                };
             }
         }
         text.push('\n');

@@ -36,7 +36,7 @@ impl Checker<'_> {
             return Ok(value);
         }
         // Rounded to what a person would write.
-        let tidy = |value: f64| (value * 1e9).round() * 1e-9;
+        let tidy = |value: f64| (value * 1e9).round() / 1e9;
         let (below, above) = (tidy(steps.floor() * step), tidy(steps.ceil() * step));
         let below = if below > 0.0 { below } else { above };
         Err(ConfigError::NotAMultiple { path: self.path.to_owned(), key, value, step_key, step, below, above })
@@ -66,7 +66,7 @@ impl LiftConfig {
         let step = ("plant.step_ms", step_ms);
         let period_ms = within("controller.period_ms", controller.period_ms, 0.1, 100.0)?;
         checker.multiple(("controller.period_ms", period_ms), step)?;
-        let period = ("controller.period_ms", 1e-3 * period_ms);
+        let period = ("controller.period_ms / 1000", 1e-3 * period_ms);
         let times = [
             ("reference.duration_s", within("reference.duration_s", reference.duration_s, 0.1, 3600.0)?),
             ("reference.handover_s", within("reference.handover_s", reference.handover_s, 0.0, 60.0)?),

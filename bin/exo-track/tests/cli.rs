@@ -1,0 +1,143 @@
+//! The executable: a lift from files, and what it says to wrong ones.
+
+#![expect(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/model.json");
+const CONFIG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../configs/lift.toml");
+
+/// A folder with the configuration, changed by replacing text, and the model.
+fn folder(changes: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = std::fs::read_to_string(CONFIG).unwrap();
+    for (old, new) in changes {
+        assert!(text.contains(old), "{old}");
+        text = text.replacen(old, new, 1);
+    }
+    std::fs::write(folder.path().join("lift.toml"), text).unwrap();
+    std::fs::copy(MODEL, folder.path().join("model.json")).unwrap();
+    folder
+}
+
+fn run(folder: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_exo-track"))
+        .current_dir(folder)
+        .args(["--config", "lift.toml", "--model", "model.json"])
+        .args(more)
+        .output()
+        .unwrap()
+}
+
+/// Standard error of a run that is refused: one line, exit code 2, no output.
+fn refused(changes: &[(&str, &str)]) -> String {
+    let folder = folder(changes);
+    let output = run(folder.path(), &["--out", "track.csv", "--metrics", "metrics.json"]);
+    assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(!folder.path().join("track.csv").exists() && !folder.path().join("metrics.json").exists());
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text
+}
+
+#[test]
+fn every_configuration_of_a_lift_is_fine() {
+    let configs = PathBuf::from(CONFIG).parent().unwrap().to_owned();
+    let mut seen = 0;
+    for entry in std::fs::read_dir(configs).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if name.starts_with("lift") {
+            let output = Command::new(env!("CARGO_BIN_EXE_exo-track"))
+                .args(["--model", MODEL, "--check", "--config"])
+                .arg(&path)
+                .output()
+                .unwrap();
+            assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+            seen += 1;
+        }
+    }
+    assert!(seen > 0);
+}
+
+#[test]
+fn a_lift_writes_track_metrics_and_figures_that_are_the_same_again() {
+    let folder = folder(&[]);
+    let files =
+        |run: u32| ["track.csv", "metrics.json", "lift.svg", "envelope.svg"].map(|name| format!("{run}-{name}"));
+    let mut contents = Vec::new();
+    for (number, threads) in [(1, "1"), (2, "2")] {
+        let names = files(number);
+        let output = run(
+            folder.path(),
+            &[
+                "--out",
+                &names[0],
+                "--metrics",
+                &names[1],
+                "--figure",
+                &names[2],
+                "--trials",
+                "64",
+                "--trials-figure",
+                &names[3],
+                "--threads",
+                threads,
+            ],
+        );
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        contents.push(names.map(|name| std::fs::read_to_string(folder.path().join(name)).unwrap()));
+    }
+    assert_eq!(contents[0], contents[1]);
+    let [track, metrics, ..] = &contents[0];
+    assert_eq!(track.lines().count(), 502, "a header and 5 s at 100 Hz");
+    assert!(track.lines().all(|line| line.split(',').count() == 46));
+    let metrics: serde_json::Value = serde_json::from_str(metrics).unwrap();
+    assert_eq!(metrics["schema"], "exo-metrics/1");
+    for arm in ["left", "right"] {
+        let angle = &metrics[arm]["errors"]["angle_rad"];
+        assert!(angle["max"].as_f64().unwrap() <= 0.00175 && angle["rmse"].as_f64().unwrap() <= 0.00048);
+    }
+    assert_eq!(metrics["trials"]["n_trials"], 64);
+}
+
+#[test]
+fn what_no_lift_has_is_refused_by_name() {
+    insta::assert_snapshot!(refused(&[("mass_kg = 5.0 ", "mass_kg = nan ")]), @"error: lift.toml: load.mass_kg = NaN is outside 0 to 500; write a number");
+    insta::assert_snapshot!(refused(&[("mass_kg = 5.0 ", "mass_kg = -5.0 ")]), @"error: lift.toml: load.mass_kg = -5 is outside 0 to 500; check the value and its unit");
+    insta::assert_snapshot!(refused(&[("period_ms = 10.0", "period_ms = 10.5")]), @"error: lift.toml: controller.period_ms = 10.5 is no multiple of plant.step_ms = 1; choose 10 or 11, or another step");
+    insta::assert_snapshot!(refused(&[("duration_s = 5.0", "duration_s = 5.003")]), @"error: lift.toml: reference.duration_s = 5.003 is no multiple of controller.period_ms / 1000 = 0.01; choose 5 or 5.01, or another step");
+    insta::assert_snapshot!(refused(&[("highest_kpa = 500.0", "highest_kpa = 700.0")]), @"error: lift.toml: valve.highest_kpa = 700 is not below valve.supply_kpa = 600");
+    insta::assert_snapshot!(refused(&[("kp_per_s2", "kp_per_s")]), @"error: lift.toml:66:1: unknown field `kp_per_s`, expected one of `period_ms`, `kp_per_s2`, `kd_per_s`, `observer_rad_per_s`, `length`, `integral_per_s3`, `disturbance_observer`, `lag_compensation`, `valve_lag_ms`, `pressure_loop_ms`, `hysteresis_aware`, `presliding_mm`, `payload_estimation`");
+    insta::assert_snapshot!(refused(&[("\"proportional\"", "\"poppet\"")]), @"error: lift.toml:46:8: unknown variant `poppet`, expected `proportional` or `on-off`");
+}
+
+#[test]
+fn a_reference_out_of_reach_is_refused_with_angle_and_forces() {
+    insta::assert_snapshot!(refused(&[("mass_kg = 5.0 ", "mass_kg = 60.0 ")]), @"error: lift.toml: the muscle cannot reach the reference: at 0.202 rad (2.98 s, length 239.5 mm) the lift needs 609.7 N, and 500 kPa give 607.1 N; lower load.mass_kg or reference.to_rad, or raise valve.highest_kpa");
+}
+
+#[test]
+fn an_artifact_of_another_kind_is_refused() {
+    let folder = folder(&[]);
+    std::fs::write(folder.path().join("other.json"), r#"{"schema": "pam-diagnosis/1"}"#).unwrap();
+    for (option, expected) in [("--inverse", "pam-inverse/1"), ("--plant", "pam-model/1")] {
+        let output = run(folder.path(), &["--out", "track.csv", option, "other.json"]);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(text.contains("other.json: schema is \"pam-diagnosis/1\"") && text.contains(expected), "{text}");
+        assert!(!folder.path().join("track.csv").exists());
+    }
+}
+
+#[test]
+fn a_lift_that_saturates_is_rejected_with_time_and_force() {
+    let changes = [("highest_kpa = 500.0", "highest_kpa = 112.0"), ("friction_factor = 1.0", "friction_factor = 6.0")];
+    let folder = folder(&changes);
+    let output = run(folder.path(), &["--out", "track.csv"]);
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(text.contains("rejected: left arm saturated from"), "{text}");
+    assert!(folder.path().join("track.csv").exists(), "what happened is there to look at");
+}
