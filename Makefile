@@ -5,7 +5,7 @@ OUT := out
 DATA := datasets/bench-nominal
 BIN := target/release
 
-.PHONY: all test check bench datasets recordings clean cargo-is-there
+.PHONY: all test check bench tables datasets recordings clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --workspace --bins
@@ -31,6 +31,11 @@ check: cargo-is-there
 bench: cargo-is-there
 	@$(CARGO) bench --locked --workspace
 	@scripts/bench-programs
+
+# Every table and figure of the chain, from seeds, into out/tables.
+tables: cargo-is-there
+	@$(CARGO) build --release --locked --workspace --bins
+	@scripts/tables
 
 # Writes the shipped recordings anew, byte for byte.
 datasets: cargo-is-there
