@@ -6,6 +6,7 @@
 
 pub mod artifact;
 pub mod direction;
+pub mod effects;
 pub mod force;
 pub mod muscle;
 pub mod quality;

@@ -1,0 +1,160 @@
+//! Effects beyond eq. 11: the catalogue.
+//!
+//! One effect is one file: equation, symbols, ranges, source, signature, what it is confused with and the
+//! test that tells them apart, as its [`Page`]. An effect has *shape* parameters (time constants,
+//! thresholds), in which the force is nonlinear, and *amplitudes*, in which it is linear once the shape is
+//! fixed. It acts in one of five [`Role`]s, in this order, at every [`Moment`]:
+//!
+//! ```text
+//! recorded p, L ─ shift ─► sees ─► p, L in the muscle ─► eq. 11, with the friction that slides ─► + pulls ─► reads ─► force
+//! ```
+//!
+//! What an effect remembers is its [`Memory`]. The first moment of a memory finds it settled: as if the
+//! muscle had long been there and had come slowly, in the present direction. So one moment alone gives the
+//! static force, and a row of them the history, in a recording as in a simulation.
+
+mod catalogue;
+pub mod moment;
+pub mod page;
+pub mod slip;
+
+mod presliding_hysteresis;
+mod pressure_lag;
+mod viscous_damping;
+
+pub use catalogue::{CATALOGUE, effect};
+pub use moment::{Base, Moment};
+pub use page::{Page, Symbol};
+
+use crate::muscle::Muscle;
+
+/// Where an effect acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Moves a channel in time; [`Effect::delays_s`].
+    Shift,
+    /// Changes the pressure or the length that the muscle sees; [`Memory::sees`].
+    Sees,
+    /// Takes the place of the direction in the friction of eq. 11; [`Memory::slides`].
+    Slides,
+    /// Adds a force; [`Memory::pulls`].
+    Pulls,
+    /// Changes what the load cell reads of the force; [`Memory::reads`].
+    Reads,
+}
+
+/// What an effect belongs to; a simulation of the muscle takes the muscle's alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// A sensor, its wiring or its clock.
+    Instrument,
+    /// The bench around the muscle.
+    Fixture,
+    /// The muscle itself, its tube included.
+    Muscle,
+    /// Something that happened once, in one recording.
+    Event,
+}
+
+/// A parameter in which the force is nonlinear; SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// Name in artifacts, snake case with unit: `time_constant_s`.
+    pub name: &'static str,
+    /// Unit; `1` where it has none.
+    pub unit: &'static str,
+    /// Lowest and highest value that a fit may give it.
+    pub range: (f64, f64),
+    /// Where a fit looks first, in rising order.
+    pub grid: &'static [f64],
+}
+
+/// A parameter in which the force is linear; SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Amplitude {
+    /// Name in artifacts.
+    pub name: &'static str,
+    /// Unit; `1` where it has none.
+    pub unit: &'static str,
+    /// Lowest and highest value that physics allows.
+    pub range: (f64, f64),
+}
+
+/// What the recordings cover, for grids that depend on it; SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// Lowest and highest contraction ratio.
+    pub contraction_ratio: (f64, f64),
+    /// Lowest and highest gauge pressure, in Pa.
+    pub pressure_pa: (f64, f64),
+    /// Lowest and highest force, in N.
+    pub force_n: (f64, f64),
+    /// Longest recording, in s.
+    pub duration_s: f64,
+}
+
+/// An effect of the catalogue.
+pub trait Effect: Sync {
+    /// What a person should know of it.
+    fn page(&self) -> &'static Page;
+
+    /// Where it acts.
+    fn role(&self) -> Role;
+
+    /// What it belongs to.
+    fn kind(&self) -> Kind;
+
+    /// Parameters in which the force is nonlinear.
+    fn shape(&self) -> &'static [Shape];
+
+    /// Parameters in which the force is linear; none where the role is not [`Role::Pulls`].
+    fn amplitudes(&self) -> &'static [Amplitude] {
+        &[]
+    }
+
+    /// Shapes where a fit looks first; all combinations of the grids unless the effect knows better.
+    fn first_shapes(&self, _seen: &Seen) -> Vec<Vec<f64>> {
+        let mut shapes = vec![Vec::new()];
+        for parameter in self.shape() {
+            shapes = shapes
+                .iter()
+                .flat_map(|shape| parameter.grid.iter().map(move |&value| [shape.as_slice(), &[value]].concat()))
+                .collect();
+        }
+        shapes
+    }
+
+    /// By how much the channels of pressure and length are late behind the force, in s; [`Role::Shift`].
+    fn delays_s(&self, _shape: &[f64]) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// A memory at the beginning of a recording or a simulation.
+    fn start(&self, muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory>;
+}
+
+/// What an effect remembers from moment to moment.
+///
+/// At the first moment, and at the first one behind a gap (`step_s == 0`), a memory is settled.
+pub trait Memory: Send {
+    /// Changes pressure or length from what the channels say to what the muscle sees.
+    fn sees(&mut self, _now: &mut Moment) {}
+
+    /// What stands in the place of the direction in the friction of eq. 11, in [-1, 1] as a rule.
+    fn slides(&mut self, now: &Moment) -> f64 {
+        now.direction
+    }
+
+    /// Fills in the force per unit of each amplitude.
+    fn pulls(&mut self, _now: &Moment, _base: &Base, _columns: &mut [f64]) {}
+
+    /// What the load cell reads of a force, in N.
+    fn reads(&mut self, force_n: f64) -> f64 {
+        force_n
+    }
+
+    /// Whether [`reads`](Self::reads) leaves nothing of changes of the force there.
+    fn cuts(&self, _force_n: f64) -> bool {
+        false
+    }
+}

@@ -1,0 +1,50 @@
+//! What a person should know of an effect.
+
+/// The page of an effect in the catalogue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Page {
+    /// Catalogue id, kebab case.
+    pub id: &'static str,
+    /// Name in words, as in "the muscle shows …".
+    pub name: &'static str,
+    /// What happens, in two or three sentences.
+    pub summary: &'static str,
+    /// The equation that is fitted, in plain text.
+    pub equation: &'static str,
+    /// Its symbols.
+    pub symbols: &'static [Symbol],
+    /// When the equation holds.
+    pub validity: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// What it does to a residual.
+    pub signature: &'static str,
+    /// Ids of the effects it is confused with, each with the reason and the bench test that separates the two.
+    pub confused_with: &'static [Confusion],
+    /// The bench test that shows the effect by itself.
+    pub test: &'static str,
+    /// Protocol of the virtual bench that shows it best, and that `--next-experiment` asks for.
+    pub protocol: &'static str,
+}
+
+/// One symbol of an equation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Symbol {
+    /// As in the equation.
+    pub symbol: &'static str,
+    /// Unit; `1` where it has none.
+    pub unit: &'static str,
+    /// Meaning, and the usual range of a parameter.
+    pub meaning: &'static str,
+}
+
+/// An effect that looks alike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Confusion {
+    /// Catalogue id.
+    pub id: &'static str,
+    /// Why they look alike.
+    pub because: &'static str,
+    /// What tells them apart on a bench.
+    pub test: &'static str,
+}
