@@ -3,9 +3,11 @@
 //! Every artifact begins with `schema`, `tool`, `inputs`, `config` and `seed`. Equal inputs give equal bytes on
 //! any thread count; time stamps stay out.
 
+pub mod diagnosis;
 pub mod inverse;
 pub mod model;
 
+pub use diagnosis::DiagnosisArtifact;
 pub use inverse::InverseArtifact;
 pub use model::ModelArtifact;
 

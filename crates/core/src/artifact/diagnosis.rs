@@ -1,0 +1,288 @@
+//! `pam-diagnosis/1`: where a model and recordings differ, and what explains it.
+
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::model::ParameterEntry;
+use super::{ArtifactError, Input, Tool};
+
+/// Schema name and version.
+pub const SCHEMA: &str = "pam-diagnosis/1";
+
+/// A diagnosis with everything that later programs need.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DiagnosisArtifact {
+    /// `pam-diagnosis/1`.
+    pub schema: String,
+    /// Program that wrote it.
+    pub tool: Tool,
+    /// Files that went into it.
+    pub inputs: Vec<Input>,
+    /// Options as resolved.
+    pub config: DiagnoseConfig,
+    /// Seed of every random draw.
+    pub seed: u64,
+    /// What is to be believed.
+    pub verdict: Verdict,
+    /// The verdict in one sentence.
+    pub statement: String,
+    /// Where model and recordings differ, the largest share first; empty where they agree.
+    #[serde(rename = "where")]
+    pub regions: Vec<Region>,
+    /// Effects that were left out, in order of evidence.
+    pub effects: Vec<NamedEffect>,
+    /// Residuals before and after.
+    pub fit: DiagnosisFit,
+    /// Share of the excess over the noise floor (mean squares) that the effects leave unexplained, in [0, 1].
+    pub unexplained_share: f64,
+    /// Where structure is left that no effect explains; empty where none is.
+    pub unexplained_where: Vec<Region>,
+    /// Base parameters that no such muscle has: effects that the parameters absorb show here alone.
+    pub implausible: Vec<Implausible>,
+    /// Everything that was weighed, in order of the first look.
+    pub candidates: Vec<Candidate>,
+    /// What the recordings could tell apart at all.
+    pub isolability: Isolability,
+    /// What to record next, where that would tell more.
+    pub next_experiment: Option<NextExperiment>,
+    /// What a person should know before using the diagnosis.
+    pub warnings: Vec<String>,
+}
+
+/// What is to be believed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Model and recordings agree, but for what noise, the parameters' uncertainty or the limit of what matters allow.
+    Consistent,
+    /// The named effects explain the mismatch.
+    Explained,
+    /// They do, and so do others that these recordings cannot tell from them.
+    Ambiguous,
+    /// Structure is left that no effect of the catalogue explains.
+    Unexplained,
+}
+
+/// Options that a diagnosis was run with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DiagnoseConfig {
+    /// Excess over the noise floor, root mean square, below which a mismatch does not matter, in N; none leaves it to
+    /// half of the noise floor.
+    pub matters_above_n: Option<f64>,
+    /// Most effects that may be named.
+    pub max_effects: usize,
+    /// Catalogue ids that were not considered.
+    pub excluded: Vec<String>,
+}
+
+/// An interval of one coordinate in which the residual exceeds the noise floor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Region {
+    /// Coordinate.
+    pub coordinate: Coordinate,
+    /// Lower end.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+    /// Unit of both.
+    pub unit: String,
+    /// Share of the excess over the noise floor that lies inside.
+    pub share_of_excess: f64,
+    /// Probability of such a concentration by chance, corrected for the number of looks.
+    pub p_value: f64,
+    /// Recording that it lies in, where it lies in one; a path.
+    pub recording: Option<String>,
+}
+
+/// What a residual is laid out over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Coordinate {
+    /// Time since the recording began, in s.
+    Time,
+    /// Gauge pressure, in Pa.
+    Pressure,
+    /// Contraction ratio.
+    Contraction,
+    /// Size of the speed, in m/s.
+    Speed,
+    /// Travel of the braid since the last reversal, in m.
+    TravelSinceReversal,
+    /// Time since the last move, in s.
+    TimeSinceLastMove,
+    /// Cycle of motion, counted from 1.
+    Cycle,
+    /// Force as the base model has it, in N.
+    Force,
+}
+
+impl Coordinate {
+    /// Every coordinate.
+    pub const ALL: [Self; 8] = [
+        Self::Time,
+        Self::Pressure,
+        Self::Contraction,
+        Self::Speed,
+        Self::TravelSinceReversal,
+        Self::TimeSinceLastMove,
+        Self::Cycle,
+        Self::Force,
+    ];
+
+    /// Name as in the artifact.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Time => "time",
+            Self::Pressure => "pressure",
+            Self::Contraction => "contraction",
+            Self::Speed => "speed",
+            Self::TravelSinceReversal => "travel_since_reversal",
+            Self::TimeSinceLastMove => "time_since_last_move",
+            Self::Cycle => "cycle",
+            Self::Force => "force",
+        }
+    }
+
+    /// Unit as in the artifact.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Time | Self::TimeSinceLastMove => "s",
+            Self::Pressure => "Pa",
+            Self::Contraction | Self::Cycle => "1",
+            Self::Speed => "m/s",
+            Self::TravelSinceReversal => "m",
+            Self::Force => "N",
+        }
+    }
+}
+
+/// An effect that was left out of the model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NamedEffect {
+    /// Catalogue id.
+    pub id: String,
+    /// Name in words.
+    pub name: String,
+    /// Equation that was fitted.
+    pub equation: String,
+    /// Its parameters, SI.
+    pub parameters: Vec<ParameterEntry>,
+    /// Why it is believed.
+    pub evidence: Evidence,
+    /// Catalogue ids that these recordings cannot tell apart from it.
+    pub alternatives: Vec<String>,
+    /// What would tell them apart, or confirm it where nothing else is in question.
+    pub separating_test: String,
+}
+
+/// Evidence for an effect: base and effects fitted jointly to all blocks but one, judged on that one, in turn.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Evidence {
+    /// Sum over held-out blocks of `ln(mean square without / mean square with)`.
+    pub log_ratio: f64,
+    /// Held-out RMSE without it, everything else refitted, in N.
+    pub rmse_without_n: f64,
+    /// Held-out RMSE with it, in N.
+    pub rmse_with_n: f64,
+    /// Held-out blocks that it improves.
+    pub blocks_improved: usize,
+    /// Held-out blocks.
+    pub n_blocks: usize,
+    /// Probability of such an improvement by chance, corrected for the number of looks.
+    pub p_value: f64,
+}
+
+/// Residuals before and after, root mean square over samples whose direction is settled.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DiagnosisFit {
+    /// On the recordings that the effects were fitted to.
+    pub estimation: BeforeAfter,
+    /// On recordings that nothing was fitted to.
+    pub holdout: Option<BeforeAfter>,
+}
+
+/// Residuals before and after.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BeforeAfter {
+    /// Base model, refitted to the same recordings, in N.
+    pub rmse_before_n: f64,
+    /// Base model and effects, in N.
+    pub rmse_after_n: f64,
+    /// What noise leaves of any model, in N.
+    pub noise_floor_n: f64,
+}
+
+/// A base parameter that no such muscle has.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Implausible {
+    /// Parameter or composite.
+    pub parameter: String,
+    /// Value.
+    pub value: f64,
+    /// Unit.
+    pub unit: String,
+    /// Lowest and highest plausible value.
+    pub plausible: [f64; 2],
+    /// What usually stands behind it, in words.
+    pub likely_cause: String,
+}
+
+/// An effect that was weighed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Candidate {
+    /// Catalogue id, or `smooth-static-misfit`, the competitor without a name.
+    pub id: String,
+    /// Evidence alone, against the base model.
+    pub evidence: Evidence,
+    /// Share of the excess over the noise floor that it explains alone, in [0, 1].
+    pub explains: f64,
+    /// What became of it, in words.
+    pub outcome: String,
+}
+
+/// What recordings can tell apart: how much of each effect's residual would be left by every other one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Isolability {
+    /// Catalogue ids, in the order of the matrix.
+    pub ids: Vec<String>,
+    /// Residual that each effect would leave after a refit of the base at a typical size, in N.
+    pub visible_n: Vec<f64>,
+    /// Cosine between the residuals of each pair: near 1 they cannot be told apart. Square, row by row.
+    pub cosine: Vec<Vec<f64>>,
+}
+
+/// A recording that would tell more.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NextExperiment {
+    /// Protocol, by the name of the virtual bench.
+    pub protocol: String,
+    /// What it would decide.
+    pub separates: Vec<String>,
+    /// How far apart it would drive them, root mean square, in N.
+    pub separation_n: f64,
+    /// How to do it, in words.
+    pub instruction: String,
+}
+
+impl DiagnosisArtifact {
+    /// Reads an artifact; gives its SHA-256 as well.
+    ///
+    /// # Errors
+    /// [`ArtifactError`] names the file, the place and what to do.
+    pub fn read(path: &Path) -> Result<(Self, String), ArtifactError> {
+        super::read(path, SCHEMA, "write it with pam-diagnose")
+    }
+}
