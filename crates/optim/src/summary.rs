@@ -37,6 +37,17 @@ impl Summary {
         Self { width, triangle: vec![0.0; width * width], n_rows: 0 }
     }
 
+    /// The triangle `R` itself, `(n_columns + 1)²` values, row-major, zero below the diagonal; it stands for `n_rows`
+    /// rows.
+    ///
+    /// # Panics
+    /// Where the number of values is not that of a triangle of `n_columns` columns and `y`.
+    pub fn from_triangle(n_columns: usize, triangle: Vec<f64>, n_rows: u64) -> Self {
+        let width = n_columns + 1;
+        assert_eq!(triangle.len(), width * width, "a triangle has as many rows as columns");
+        Self { width, triangle, n_rows }
+    }
+
     /// Columns of `X`.
     pub fn n_columns(&self) -> usize {
         self.width - 1

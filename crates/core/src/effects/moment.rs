@@ -1,5 +1,7 @@
 //! The muscle at one instant, as effects see it.
 
+use crate::force::ForceModel;
+
 /// Channels and what follows from them at one instant, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment {
@@ -52,4 +54,26 @@ pub struct Base {
     pub slope_n_per_pa: f64,
     /// Its derivative by length, in N/m.
     pub slope_n_per_m: f64,
+}
+
+impl Base {
+    /// What `model` says at a pressure and a length.
+    pub fn of(model: &ForceModel, pressure_pa: f64, length_m: f64) -> Self {
+        const STEP_PA: f64 = 1e2;
+        const STEP_M: f64 = 1e-5;
+        let terms = model.terms(pressure_pa, length_m, 0.0);
+        let force_n = |pressure_pa: f64, length_m: f64| model.force_n(pressure_pa, length_m, 0.0);
+        let shape = model.bladder_n_per_pa(length_m);
+        Self {
+            gas_n: terms.gas_n,
+            bladder_n: terms.bladder_n,
+            bladder_n_per_pa: shape,
+            normal_n: model.normal_n(pressure_pa, length_m),
+            static_force_n: terms.force_n(),
+            slope_n_per_pa: (force_n(pressure_pa + STEP_PA, length_m) - force_n(pressure_pa - STEP_PA, length_m))
+                / (2.0 * STEP_PA),
+            slope_n_per_m: (force_n(pressure_pa, length_m + STEP_M) - force_n(pressure_pa, length_m - STEP_M))
+                / (2.0 * STEP_M),
+        }
+    }
 }

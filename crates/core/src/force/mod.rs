@@ -216,6 +216,20 @@ impl ForceModel {
         }
     }
 
+    /// Force of the bladder per pascal of `C₁₀ + C₀₁`, shared as the parameters are and evenly where both are zero, in
+    /// N/Pa, with the sign of the form.
+    pub fn bladder_n_per_pa(&self, length_m: f64) -> f64 {
+        let [by_c10, by_c01] = self.bladder.columns_n_per_pa(length_m);
+        let (c10_pa, c01_pa) = (self.parameters.of(Parameter::C10), self.parameters.of(Parameter::C01));
+        let share = if c10_pa + c01_pa > 0.0 { c10_pa / (c10_pa + c01_pa) } else { 0.5 };
+        self.form.bladder_sign() * (share * by_c10 + (1.0 - share) * by_c01)
+    }
+
+    /// `p π D L`: what presses the bladder against the strands, in N.
+    pub fn normal_n(&self, pressure_pa: f64, length_m: f64) -> f64 {
+        rubber_friction::normal_force_n(pressure_pa, self.kinematics.diameter_m(length_m), length_m)
+    }
+
     /// Force of the muscle, in N; see [`terms`](Self::terms).
     pub fn force_n(&self, pressure_pa: f64, length_m: f64, direction: f64) -> f64 {
         self.terms(pressure_pa, length_m, direction).force_n()

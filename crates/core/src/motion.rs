@@ -1,0 +1,253 @@
+//! How a recording moves: its channels smooth, with their rates, as effects see them.
+//!
+//! Rates of noisy channels come from a parabola fitted to a centered window of [`HALF_WINDOW_S`] to either side
+//! (Savitzky and Golay, 1964): value, slope and curvature in one go, the same window for every channel, so that smoothing
+//! shifts none against the other.
+
+use std::io;
+
+use crate::direction::{Direction, STANDSTILL_S, Thresholds};
+use crate::effects::Moment;
+use crate::effects::moment::SLIDE_M_PER_PA;
+use crate::recording::Recording;
+
+/// Half of the window of the parabola, in s; at least four samples and at most fifty to either side.
+pub const HALF_WINDOW_S: f64 = 0.04;
+
+/// One row of a recording with everything that effects need.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instant {
+    /// Row of the recording.
+    pub row: usize,
+    /// What effects see.
+    pub moment: Moment,
+    /// Force, in N; as recorded or smooth like the other channels.
+    pub force_n: f64,
+    /// Whether the direction is certain, all through the window where channels are smooth.
+    pub settled: bool,
+}
+
+/// Which values of the channels an instant carries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channels {
+    /// As recorded.
+    Recorded,
+    /// Smooth.
+    Smooth,
+}
+
+/// Walks over every `stride`-th row of `recording`, in order, a segment at a time. `index` is the number of the recording,
+/// `rest_length_m` that of the muscle.
+///
+/// # Errors
+/// Where the samples cannot be read back.
+pub fn walk(
+    recording: &Recording,
+    direction: &Direction,
+    thresholds: Thresholds,
+    rest_length_m: f64,
+    index: usize,
+    stride: usize,
+    channels: Channels,
+    visit: &mut dyn FnMut(Instant),
+) -> io::Result<()> {
+    let mut first_s = None;
+    for segment in &recording.segments {
+        let rows = Rows::read(recording, segment.clone())?;
+        let Some(&begin_s) = rows.time_s.first() else { continue };
+        let origin_s = *first_s.get_or_insert(begin_s);
+        let window = Window::over(&rows.time_s);
+        let still = Still::of(&rows, &window, thresholds.length_m);
+        let mut last: Option<(f64, f64)> = None;
+        let mut by_pressure_m = 0.0;
+        let mut at = 0;
+        while at < rows.time_s.len() {
+            let [pressure, length, force] =
+                [&rows.pressure_pa, &rows.length_m, &rows.force_n].map(|channel| window.parabola(channel, at));
+            let row = segment.start + at;
+            let (step_s, pressure_step_pa) = last
+                .map_or((0.0, 0.0), |(time_s, pressure_pa)| (rows.time_s[at] - time_s, pressure.value - pressure_pa));
+            if still.at(at) {
+                by_pressure_m += SLIDE_M_PER_PA * pressure_step_pa;
+            }
+            last = Some((rows.time_s[at], pressure.value));
+            let smooth = channels == Channels::Smooth;
+            let choose = |smooth_value: f64, recorded: f64| if smooth { smooth_value } else { recorded };
+            let force_n = choose(force.value, rows.force_n.get(at).copied().unwrap_or(0.0));
+            visit(Instant {
+                row,
+                moment: Moment {
+                    recording: index,
+                    time_s: rows.time_s[at] - origin_s,
+                    step_s,
+                    pressure_pa: choose(pressure.value, rows.pressure_pa[at]),
+                    pressure_rate_pa_per_s: pressure.slope,
+                    length_m: choose(length.value, rows.length_m[at]),
+                    contraction_ratio: (rest_length_m - length.value) / rest_length_m,
+                    speed_m_per_s: -length.slope,
+                    acceleration_m_per_s2: -length.curvature,
+                    direction: direction.sign(row),
+                    slide_m: rest_length_m - length.value + by_pressure_m,
+                    force_n: force.value,
+                },
+                force_n,
+                settled: if smooth {
+                    let (from, to) = (at.saturating_sub(window.half), (at + window.half).min(rows.time_s.len() - 1));
+                    direction.is_settled(segment.start + from)
+                        && direction.is_settled(row)
+                        && direction.is_settled(segment.start + to)
+                } else {
+                    direction.is_settled(row)
+                },
+            });
+            at += stride;
+        }
+    }
+    Ok(())
+}
+
+/// Columns of one segment.
+struct Rows {
+    time_s: Vec<f64>,
+    pressure_pa: Vec<f64>,
+    length_m: Vec<f64>,
+    /// Empty where none was recorded.
+    force_n: Vec<f64>,
+}
+
+impl Rows {
+    fn read(recording: &Recording, segment: std::ops::Range<usize>) -> io::Result<Self> {
+        let mut rows = Self { time_s: Vec::new(), pressure_pa: Vec::new(), length_m: Vec::new(), force_n: Vec::new() };
+        for index in 0..recording.samples.n_chunks() {
+            let here = recording.samples.chunk_rows(index);
+            let (from, to) = (segment.start.max(here.start), segment.end.min(here.end));
+            if from >= to {
+                continue;
+            }
+            let chunk = recording.samples.chunk(index)?;
+            let range = from - here.start..to - here.start;
+            rows.time_s.extend_from_slice(&chunk.time_s()[range.clone()]);
+            rows.pressure_pa.extend_from_slice(&chunk.pressure_pa()[range.clone()]);
+            rows.length_m.extend_from_slice(&chunk.length_m()[range.clone()]);
+            if recording.samples.has_force() {
+                rows.force_n.extend_from_slice(&chunk.force_n()[range]);
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// A channel around one row.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Parabola {
+    value: f64,
+    /// Per second.
+    slope: f64,
+    /// Second derivative, per second squared.
+    curvature: f64,
+}
+
+/// The window of the parabola over evenly sampled rows.
+struct Window {
+    half: usize,
+    period_s: f64,
+    n_rows: usize,
+    /// `Σ u²` and the determinant terms of the normal equations over `u = -half..=half`.
+    sum2: f64,
+    sum4: f64,
+}
+
+impl Window {
+    fn over(time_s: &[f64]) -> Self {
+        let n_rows = time_s.len();
+        let period_s = if n_rows > 1 { (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1) as f64 } else { 1.0 };
+        let half = ((HALF_WINDOW_S / period_s).round() as usize).clamp(4, 50);
+        let h = half as f64;
+        let sum2 = h * (h + 1.0) * (2.0 * h + 1.0) / 3.0;
+        let sum4 = sum2 * (3.0 * h * h + 3.0 * h - 1.0) / 5.0;
+        Self { half, period_s, n_rows, sum2, sum4 }
+    }
+
+    /// The parabola at row `at`; near the ends that of the nearest whole window, carried on.
+    fn parabola(&self, channel: &[f64], at: usize) -> Parabola {
+        if channel.is_empty() {
+            return Parabola::default();
+        }
+        let width = 2 * self.half + 1;
+        if self.n_rows < width {
+            return Parabola { value: channel[at], ..Parabola::default() };
+        }
+        let center = at.clamp(self.half, self.n_rows - 1 - self.half);
+        let origin = channel[center];
+        let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
+        for (offset, value) in channel[center - self.half..=center + self.half].iter().enumerate() {
+            let u = offset as f64 - self.half as f64;
+            let value = value - origin;
+            sum += value;
+            first += u * value;
+            second += u * u * value;
+        }
+        let n = width as f64;
+        let determinant = n * self.sum4 - self.sum2 * self.sum2;
+        let c0 = (self.sum4 * sum - self.sum2 * second) / determinant;
+        let c1 = first / self.sum2;
+        let c2 = (n * second - self.sum2 * sum) / determinant;
+        let u = at as f64 - center as f64;
+        Parabola {
+            value: origin + c0 + c1 * u + c2 * u * u,
+            slope: (c1 + 2.0 * c2 * u) / self.period_s,
+            curvature: 2.0 * c2 / (self.period_s * self.period_s),
+        }
+    }
+}
+
+/// Where the length stands still: it moves by less than a threshold within the time around.
+struct Still {
+    /// Smooth lengths at every `every` rows.
+    lengths: Vec<f64>,
+    every: usize,
+    /// Lengths to either side that are compared.
+    reach: usize,
+    threshold_m: f64,
+}
+
+impl Still {
+    fn of(rows: &Rows, window: &Window, threshold_m: f64) -> Self {
+        let every = window.half;
+        let lengths =
+            (0..rows.length_m.len()).step_by(every).map(|at| window.parabola(&rows.length_m, at).value).collect();
+        let reach = ((0.5 * STANDSTILL_S / (every as f64 * window.period_s)).ceil() as usize).clamp(1, 20);
+        Self { lengths, every, reach, threshold_m }
+    }
+
+    fn at(&self, row: usize) -> bool {
+        let center = (row / self.every).min(self.lengths.len().saturating_sub(1));
+        let around =
+            &self.lengths[center.saturating_sub(self.reach)..(center + self.reach + 1).min(self.lengths.len())];
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &length in around {
+            low = low.min(length);
+            high = high.max(length);
+        }
+        high - low <= self.threshold_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_found_exactly_up_to_the_ends() {
+        let time_s: Vec<f64> = (0..60).map(|row| f64::from(row) * 0.005).collect();
+        let channel: Vec<f64> = time_s.iter().map(|t| 3.0 - 2.0 * t + 5.0 * t * t).collect();
+        let window = Window::over(&time_s);
+        for at in [0, 3, 30, 59] {
+            let t = time_s[at];
+            let found = window.parabola(&channel, at);
+            assert!((found.value - channel[at]).abs() < 1e-12);
+            assert!((found.slope - (10.0 * t - 2.0)).abs() < 1e-9);
+            assert!((found.curvature - 10.0).abs() < 1e-7);
+        }
+    }
+}

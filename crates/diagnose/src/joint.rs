@@ -1,0 +1,113 @@
+//! Base and effects fitted together, within what physics allows, and judged on blocks that the fit never saw.
+
+use pam_core::force::BaseParameters;
+use pam_core::force::columns::ForceColumns;
+use pam_identification::problem::ForceProblem;
+use pam_identification::search_space::SearchSpace;
+use pam_optim::polish::descend;
+use rayon::prelude::*;
+
+use crate::normal::Extended;
+
+/// Groups of blocks that are held out in turn.
+pub const FOLDS: usize = 8;
+
+/// Parameters of a joint fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointFit {
+    /// Point of the unit box: coordinates of the base, then of the amplitudes.
+    pub x: Vec<f64>,
+    /// Which coordinates press against their range.
+    pub at_bound: Vec<bool>,
+    /// Weights of all columns.
+    pub weights: Vec<f64>,
+    /// Parameters of eq. 11.
+    pub parameters: BaseParameters,
+    /// Amplitudes of the effects, in order.
+    pub amplitudes: Vec<f64>,
+    /// Mean square of the residual over what it was fitted to, in N².
+    pub mean_square: f64,
+}
+
+/// Mean squares over held-out blocks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldOut {
+    /// Mean square of each block under a fit that never saw its fold, in N².
+    pub blocks: Vec<f64>,
+    /// Rows of each block that count.
+    pub counts: Vec<f64>,
+}
+
+impl HeldOut {
+    /// Over all blocks, in N².
+    pub fn mean_square(&self) -> f64 {
+        let rows: f64 = self.counts.iter().sum();
+        self.blocks.iter().zip(&self.counts).map(|(square, count)| square * count).sum::<f64>() / rows.max(1.0)
+    }
+
+    /// `Σ ln(without / with)` over the blocks, each weighed by its rows so that all together weigh as many as there are.
+    pub fn log_ratio(&self, with: &Self) -> f64 {
+        let rows: f64 = self.counts.iter().sum();
+        let each = self.counts.len() as f64 / rows.max(1.0);
+        self.log_ratios(with).zip(&self.counts).map(|(ratio, count)| ratio * count * each).sum()
+    }
+
+    /// `ln(without / with)` of every block; 0 where a block has no rows.
+    pub fn log_ratios<'a>(&'a self, with: &'a Self) -> impl Iterator<Item = f64> + 'a {
+        self.blocks.iter().zip(&with.blocks).zip(&self.counts).map(|((before, after), &count)| {
+            if count > 0.0 && *before > 0.0 && *after > 0.0 { (before / after).ln() } else { 0.0 }
+        })
+    }
+}
+
+/// What is fitted.
+#[derive(Debug, Clone, Copy)]
+pub struct Joint<'a> {
+    /// Columns of eq. 11.
+    pub columns: &'a ForceColumns,
+    /// Base parameters that move, and their ranges.
+    pub space: &'a SearchSpace,
+    /// Ranges of the amplitudes.
+    pub ranges: &'a [(f64, f64)],
+}
+
+impl Joint<'_> {
+    /// Fits the blocks in which `takes` is true, from `start` (base coordinates; amplitudes start at zero).
+    pub fn fit(&self, rows: &Extended<'_>, start: &[f64], takes: &dyn Fn(usize) -> bool) -> Option<JointFit> {
+        let summary = rows.summary(takes)?;
+        let problem = ForceProblem { summary: &summary, columns: self.columns, space: self.space, steps: self.ranges };
+        let n_free = self.space.free.len();
+        let mut x = start[..n_free].to_vec();
+        for (index, &(low, high)) in self.ranges.iter().enumerate() {
+            let at_zero = -low / (high - low);
+            x.push(start.get(n_free + index).copied().unwrap_or(at_zero));
+        }
+        let polished = descend(&problem, &x);
+        let weights = problem.weights(&polished.x);
+        Some(JointFit {
+            parameters: self.space.parameters(&polished.x[..n_free]),
+            amplitudes: weights[weights.len() - self.ranges.len()..].to_vec(),
+            mean_square: 2.0 * polished.cost,
+            at_bound: polished.at_bound,
+            weights,
+            x: polished.x,
+        })
+    }
+
+    /// Fits everything.
+    pub fn fit_all(&self, rows: &Extended<'_>, start: &[f64]) -> Option<JointFit> {
+        self.fit(rows, start, &|_| true)
+    }
+
+    /// Holds each fold out in turn.
+    pub fn hold_out(&self, rows: &Extended<'_>, start: &[f64]) -> Option<HeldOut> {
+        let folds: Option<Vec<JointFit>> =
+            (0..FOLDS).into_par_iter().map(|fold| self.fit(rows, start, &|block| block % FOLDS != fold)).collect();
+        let folds = folds?;
+        let counts = rows.counts().to_vec();
+        let blocks = (0..rows.n_blocks())
+            .map(|block| rows.square_sum(block, &folds[block % FOLDS].weights) / counts[block].max(1.0))
+            .collect();
+        Some(HeldOut { blocks, counts })
+    }
+}

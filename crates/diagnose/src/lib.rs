@@ -1,0 +1,11 @@
+//! A model and recordings in; what physics was left out of the model, where, and what it buys, out.
+//!
+//! In reading order: [`track`] is the recordings on a common grid, [`sheet`] what a [`hypothesis`] makes of it, [`normal`]
+//! and [`joint`] fit base and effects together and judge them on held-out blocks.
+
+pub mod hypothesis;
+pub mod joint;
+pub mod normal;
+pub mod sheet;
+mod shift;
+pub mod track;

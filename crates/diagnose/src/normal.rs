@@ -1,0 +1,306 @@
+//! Normal equations of a sheet, block by block, in coordinates in which they are well conditioned.
+//!
+//! With `X = Z T` (`T` the triangle of all rows together, `Z` orthonormal columns) the products `ZᵀZ` of a block
+//! are of order one however ill-conditioned the columns of eq. 11 are, and so are those of any group of blocks. The force
+//! enters less what reference weights say. A triangle for a group of blocks follows from a Cholesky factorization, and
+//! candidates that only add columns are appended without touching the rows of eq. 11 again.
+
+use nalgebra::DMatrix;
+use pam_optim::summary::{BLOCK_ROWS, Summary};
+use rayon::prelude::*;
+
+use crate::track::Track;
+
+/// Rows in coordinates in which they are well conditioned, with their products.
+#[derive(Debug, Clone)]
+pub struct Normal {
+    /// Columns.
+    n: usize,
+    /// `T`, `n × n`, row-major.
+    triangle: Vec<f64>,
+    /// Reference weights, `n` of them.
+    reference: Vec<f64>,
+    /// `Z` and the force less the reference, row-major, `n + 1` values each; zero where a row does not count.
+    rows: Vec<f64>,
+    /// Products of the rows of each block, `(n + 1)²`.
+    products: Vec<DMatrix<f64>>,
+    /// Rows of each block that count.
+    counts: Vec<f64>,
+}
+
+/// A [`Normal`] with more columns behind those it has, block by block; the force is last.
+#[derive(Debug, Clone)]
+pub struct Extended<'a> {
+    normal: &'a Normal,
+    /// Columns that were added.
+    added: usize,
+    /// Scale of each added column, and of the force.
+    scales: Vec<f64>,
+    /// Products of each block: columns, added columns, force.
+    products: Vec<DMatrix<f64>>,
+}
+
+impl Normal {
+    /// Normal equations of rows of `n` columns with the forces `force_n`; rows that do not count have been zeroed by
+    /// `counted`.
+    pub fn new(
+        track: &Track,
+        columns: &[f64],
+        n: usize,
+        force_n: &[f64],
+        counted: &[bool],
+        reference: Vec<f64>,
+    ) -> Self {
+        let width = n + 1;
+        let residual = |at: usize| {
+            let row = &columns[at * n..(at + 1) * n];
+            force_n[at] - row.iter().zip(&reference).map(|(column, weight)| column * weight).sum::<f64>()
+        };
+        let triangles: Vec<Summary> = track
+            .blocks
+            .par_iter()
+            .map(|block| {
+                let mut summary = Summary::new(n);
+                let here: Vec<usize> = block.clone().filter(|&at| counted[at]).collect();
+                for rows in here.chunks(BLOCK_ROWS) {
+                    let mut buffer = vec![0.0; rows.len() * width];
+                    for (index, &at) in rows.iter().enumerate() {
+                        for column in 0..n {
+                            buffer[column * rows.len() + index] = columns[at * n + column];
+                        }
+                        buffer[n * rows.len() + index] = residual(at);
+                    }
+                    summary.fold(&mut buffer, rows.len());
+                }
+                summary
+            })
+            .collect();
+        let mut total = Summary::new(n);
+        for triangle in &triangles {
+            total.merge(triangle);
+        }
+        let mut triangle = vec![0.0; n * n];
+        for row in 0..n {
+            triangle[row * n..(row + 1) * n].copy_from_slice(&total.row(row)[..n]);
+        }
+        let largest: Vec<f64> =
+            (0..n).map(|column| (0..=column).map(|row| triangle[row * n + column].abs()).fold(0.0, f64::max)).collect();
+        // A column that is a combination of those before it has no coordinate of its own.
+        let alive: Vec<bool> =
+            (0..n).map(|column| triangle[column * n + column].abs() > 1e-11 * largest[column].max(1e-300)).collect();
+        let mut rows = vec![0.0; track.n() * width];
+        rows.par_chunks_exact_mut(width).enumerate().for_each(|(at, row)| {
+            if !counted[at] {
+                return;
+            }
+            for column in 0..n {
+                if !alive[column] {
+                    continue;
+                }
+                let mut value = columns[at * n + column];
+                for before in 0..column {
+                    value -= row[before] * triangle[before * n + column];
+                }
+                row[column] = value / triangle[column * n + column];
+            }
+            row[n] = residual(at);
+        });
+        let products = track
+            .blocks
+            .par_iter()
+            .map(|block| products_of(&rows[block.start * width..block.end * width], width))
+            .collect();
+        let counts = track.blocks.iter().map(|block| block.clone().filter(|&at| counted[at]).count() as f64).collect();
+        Self { n, triangle, reference, rows, products, counts }
+    }
+
+    /// Rows of each block that count.
+    pub fn counts(&self) -> &[f64] {
+        &self.counts
+    }
+
+    /// `Z` and the force less the reference of every row, `n + 1` values each.
+    pub fn rows(&self) -> &[f64] {
+        &self.rows
+    }
+
+    /// Weights of the columns in the coordinates of `Z`, less the reference.
+    fn coordinates(&self, weights: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        (0..n)
+            .map(|row| {
+                (row..n)
+                    .map(|column| self.triangle[row * n + column] * (weights[column] - self.reference[column]))
+                    .sum()
+            })
+            .collect()
+    }
+
+    /// A direction in weight space (`n` values) in the coordinates of `Z`.
+    pub fn direction(&self, slope: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        (0..n).map(|row| (row..n).map(|column| self.triangle[row * n + column] * slope[column]).sum()).collect()
+    }
+
+    /// With `more` columns (row-major, `k` per row) behind.
+    pub fn extend(&self, track: &Track, more: &[f64], k: usize) -> Extended<'_> {
+        let width = self.n + 1;
+        let scales: Vec<f64> = (0..k)
+            .map(|column| {
+                let squares: f64 = (0..track.n())
+                    .filter(|&at| self.rows[at * width..(at + 1) * width].iter().any(|&v| v != 0.0))
+                    .map(|at| more[at * k + column].powi(2))
+                    .sum();
+                if squares.is_finite() { squares.sqrt() } else { 0.0 }
+            })
+            .collect();
+        let inverse: Vec<f64> = scales.iter().map(|&scale| if scale > 0.0 { 1.0 / scale } else { 0.0 }).collect();
+        let total = width + k;
+        let products: Vec<DMatrix<f64>> = track
+            .blocks
+            .par_iter()
+            .zip(&self.products)
+            .map(|(block, own)| {
+                let mut out = DMatrix::zeros(total, total);
+                // Columns, added columns, force: the force moves to the end.
+                let place = |index: usize| if index < self.n { index } else { total - 1 };
+                for i in 0..width {
+                    for j in 0..width {
+                        out[(place(i), place(j))] = own[(i, j)];
+                    }
+                }
+                let mut cross = vec![0.0; k * width];
+                let mut squares = vec![0.0; k * k];
+                for at in block.clone() {
+                    let row = &self.rows[at * width..(at + 1) * width];
+                    if row.iter().all(|&value| value == 0.0) {
+                        continue;
+                    }
+                    for column in 0..k {
+                        let value = more[at * k + column] * inverse[column];
+                        if value == 0.0 {
+                            continue;
+                        }
+                        for (sum, entry) in cross[column * width..(column + 1) * width].iter_mut().zip(row) {
+                            *sum += value * entry;
+                        }
+                        for other in 0..k {
+                            squares[column * k + other] += value * more[at * k + other] * inverse[other];
+                        }
+                    }
+                }
+                for column in 0..k {
+                    for i in 0..width {
+                        out[(self.n + column, place(i))] = cross[column * width + i];
+                        out[(place(i), self.n + column)] = cross[column * width + i];
+                    }
+                    for other in 0..k {
+                        out[(self.n + column, self.n + other)] = squares[column * k + other];
+                    }
+                }
+                out
+            })
+            .collect();
+        Extended { normal: self, added: k, scales, products }
+    }
+}
+
+/// `rowsᵀ rows`, of rows of `width` values.
+fn products_of(rows: &[f64], width: usize) -> DMatrix<f64> {
+    let mut sums = vec![0.0; width * width];
+    for row in rows.chunks_exact(width) {
+        for i in 0..width {
+            let value = row[i];
+            if value == 0.0 {
+                continue;
+            }
+            for (sum, other) in sums[i * width + i..(i + 1) * width].iter_mut().zip(&row[i..]) {
+                *sum += value * other;
+            }
+        }
+    }
+    let mut out = DMatrix::zeros(width, width);
+    for i in 0..width {
+        for j in i..width {
+            out[(i, j)] = sums[i * width + j];
+            out[(j, i)] = sums[i * width + j];
+        }
+    }
+    out
+}
+
+impl Extended<'_> {
+    /// Columns, added ones included.
+    pub fn n_columns(&self) -> usize {
+        self.normal.n + self.added
+    }
+
+    /// Blocks.
+    pub fn n_blocks(&self) -> usize {
+        self.products.len()
+    }
+
+    /// Rows of each block that count.
+    pub fn counts(&self) -> &[f64] {
+        &self.normal.counts
+    }
+
+    /// The triangle that stands for the blocks in which `takes` is true; none where they do not determine one.
+    pub fn summary(&self, takes: &dyn Fn(usize) -> bool) -> Option<Summary> {
+        let (n, m) = (self.normal.n, self.n_columns());
+        let mut sum: DMatrix<f64> = DMatrix::zeros(m + 1, m + 1);
+        let mut count = 0.0;
+        for (block, product) in self.products.iter().enumerate() {
+            if takes(block) {
+                sum += product;
+                count += self.normal.counts[block];
+            }
+        }
+        let force_square = sum[(m, m)].max(f64::MIN_POSITIVE);
+        // A ridge far below anything that the data say: it keeps what they do not say at all finite.
+        for index in 0..m {
+            sum[(index, index)] += 1e-11;
+        }
+        sum[(m, m)] += 1e-12 * force_square;
+        let factor = sum.cholesky()?.l().transpose();
+        let width = m + 1;
+        let mut triangle = vec![0.0; width * width];
+        for row in 0..width {
+            for column in row..width {
+                let value = if column < n {
+                    // Through T, which is upper triangular as well.
+                    (row..=column).map(|k| factor[(row, k)] * self.normal.triangle[k * n + column]).sum()
+                } else if column < m {
+                    factor[(row, column)] * self.scales[column - n]
+                } else {
+                    factor[(row, column)]
+                };
+                triangle[row * width + column] = value;
+            }
+        }
+        // The force itself: what the reference weights say comes back.
+        for row in 0..n {
+            let back: f64 = (row..n).map(|column| triangle[row * width + column] * self.normal.reference[column]).sum();
+            triangle[row * width + m] += back;
+        }
+        Some(Summary::from_triangle(m, triangle, count as u64))
+    }
+
+    /// Sum of squares of the residual of `weights` over one block.
+    pub fn square_sum(&self, block: usize, weights: &[f64]) -> f64 {
+        let (n, m) = (self.normal.n, self.n_columns());
+        let mut u = self.normal.coordinates(&weights[..n]);
+        u.extend(weights[n..m].iter().zip(&self.scales).map(|(weight, scale)| weight * scale));
+        u.push(-1.0);
+        let product = &self.products[block];
+        let mut sum = 0.0;
+        for i in 0..=m {
+            let mut inner = 0.0;
+            for j in 0..=m {
+                inner += product[(i, j)] * u[j];
+            }
+            sum += u[i] * inner;
+        }
+        sum.max(0.0)
+    }
+}

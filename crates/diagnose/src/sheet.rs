@@ -1,0 +1,113 @@
+//! What a hypothesis makes of the track: moments in the muscle, columns of eq. 11, columns of the effects.
+
+use pam_core::effects::{Base, Memory, Moment, Role};
+use pam_core::force::ForceModel;
+use pam_core::force::columns::{FRICTION, ForceColumns, N_COLUMNS};
+use rayon::prelude::*;
+
+use crate::hypothesis::{Guess, n_amplitudes};
+use crate::shift::shifted;
+use crate::track::Track;
+
+/// Rows of a hypothesis.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    /// Moments as the muscle sees them.
+    pub seen: Vec<Moment>,
+    /// What eq. 11 says there, with the parameters that the sheet was made with.
+    pub base: Vec<Base>,
+    /// Columns of eq. 11, and of the effects behind them, row-major.
+    pub columns: Vec<f64>,
+    /// Columns of a row.
+    pub width: usize,
+}
+
+/// What does not change during a diagnosis.
+#[derive(Debug)]
+pub struct Ground<'a> {
+    /// The recordings.
+    pub track: &'a Track,
+    /// Columns of eq. 11.
+    pub columns: &'a ForceColumns,
+}
+
+impl Ground<'_> {
+    /// The rows of `guesses`; what effects need of the base comes from `model`.
+    pub fn sheet(&self, guesses: &[Guess], model: &ForceModel) -> Sheet {
+        let width = N_COLUMNS + n_amplitudes(guesses);
+        let parts: Vec<Sheet> = self
+            .track
+            .recordings
+            .par_iter()
+            .map(|range| self.recording_sheet(range.clone(), guesses, model, width))
+            .collect();
+        let mut sheet = Sheet { seen: Vec::new(), base: Vec::new(), columns: Vec::new(), width };
+        for part in parts {
+            sheet.seen.extend(part.seen);
+            sheet.base.extend(part.base);
+            sheet.columns.extend(part.columns);
+        }
+        sheet
+    }
+
+    fn recording_sheet(
+        &self,
+        range: std::ops::Range<usize>,
+        guesses: &[Guess],
+        model: &ForceModel,
+        width: usize,
+    ) -> Sheet {
+        let instants = &self.track.instants[range];
+        let mut delays_s = [0.0; 2];
+        for guess in guesses.iter().filter(|guess| guess.effect.role() == Role::Shift) {
+            let more_s = guess.effect.delays_s(&guess.shape);
+            delays_s = [delays_s[0] + more_s[0], delays_s[1] + more_s[1]];
+        }
+        let mut seen = shifted(instants, delays_s);
+        let mut memories = start(guesses, model);
+        let mut columns = vec![0.0; seen.len() * width];
+        let mut base = Vec::with_capacity(seen.len());
+        for (now, row) in seen.iter_mut().zip(columns.chunks_exact_mut(width)) {
+            let mut slide = now.direction;
+            for (guess, memory) in guesses.iter().zip(&mut memories) {
+                match guess.effect.role() {
+                    Role::Sees => memory.sees(now),
+                    Role::Slides => slide = memory.slides(now),
+                    Role::Shift | Role::Pulls | Role::Reads => {}
+                }
+            }
+            row[..N_COLUMNS].copy_from_slice(&self.columns.row(now.pressure_pa, now.length_m, 1.0));
+            for friction in &mut row[FRICTION..N_COLUMNS] {
+                *friction *= slide;
+            }
+            let here = Base::of(model, now.pressure_pa, now.length_m);
+            let mut at = N_COLUMNS;
+            for (guess, memory) in guesses.iter().zip(&mut memories) {
+                let n = guess.amplitudes().len();
+                if guess.only_adds() {
+                    memory.pulls(now, &here, &mut row[at..at + n]);
+                }
+                at += n;
+            }
+            base.push(here);
+        }
+        Sheet { seen, base, columns, width }
+    }
+
+    /// Columns of one more guess that only adds, over the moments of `sheet`, row-major.
+    pub fn more_columns(&self, sheet: &Sheet, guess: &Guess, model: &ForceModel) -> Vec<f64> {
+        let n = guess.amplitudes().len();
+        let mut columns = vec![0.0; self.track.n() * n];
+        for range in &self.track.recordings {
+            let mut memory = guess.effect.start(model.muscle(), &guess.shape);
+            for at in range.clone() {
+                memory.pulls(&sheet.seen[at], &sheet.base[at], &mut columns[at * n..(at + 1) * n]);
+            }
+        }
+        columns
+    }
+}
+
+fn start(guesses: &[Guess], model: &ForceModel) -> Vec<Box<dyn Memory>> {
+    guesses.iter().map(|guess| guess.effect.start(model.muscle(), &guess.shape)).collect()
+}

@@ -1,0 +1,102 @@
+//! Recordings on the grid that a diagnosis works on.
+//!
+//! Channels are smooth and thinned to [`PERIOD_S`], which keeps what a muscle does and leaves out most of the white
+//! noise. Every recording is cut into blocks of consecutive instants: what is fitted on some blocks is judged on others.
+
+use std::ops::Range;
+
+use pam_core::direction::Thresholds;
+use pam_core::motion::{Channels, Instant, walk};
+use pam_identification::error::IdentifyError;
+use pam_identification::prepare::Prepared;
+use rayon::prelude::*;
+
+/// Time between instants, in s, as long as there are fewer than [`MOST_INSTANTS`].
+const PERIOD_S: f64 = 0.02;
+/// Instants of all recordings together, at most; longer recordings are thinned further.
+const MOST_INSTANTS: usize = 300_000;
+/// Blocks that the recordings together are cut into, about.
+const BLOCKS: usize = 32;
+
+/// The instants of all recordings, one after the other.
+#[derive(Debug, Clone)]
+pub struct Track {
+    /// The instants.
+    pub instants: Vec<Instant>,
+    /// Instants of each recording.
+    pub recordings: Vec<Range<usize>>,
+    /// Instants of each block; a block lies within one recording.
+    pub blocks: Vec<Range<usize>>,
+    /// Recording of each block.
+    pub recording_of_block: Vec<usize>,
+    /// Whether an instant counts: its direction is settled and its values are finite.
+    pub counted: Vec<bool>,
+}
+
+impl Track {
+    /// The grid of `recordings`.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Samples`] where samples cannot be read back.
+    pub fn of(recordings: &[Prepared], thresholds: Thresholds, rest_length_m: f64) -> Result<Self, IdentifyError> {
+        let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
+        let thinned = n_rows.div_ceil(MOST_INSTANTS);
+        let walked: Result<Vec<Vec<Instant>>, IdentifyError> = recordings
+            .par_iter()
+            .enumerate()
+            .map(|(index, prepared)| {
+                let stride = ((PERIOD_S / prepared.quality.period_s).round() as usize).max(thinned).max(1);
+                let mut instants = Vec::new();
+                walk(
+                    &prepared.recording,
+                    &prepared.direction,
+                    thresholds,
+                    rest_length_m,
+                    index,
+                    stride,
+                    Channels::Smooth,
+                    &mut |instant| instants.push(instant),
+                )
+                .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+                Ok(instants)
+            })
+            .collect();
+        let walked = walked?;
+        let n: usize = walked.iter().map(Vec::len).sum();
+        let per_block = (n / BLOCKS).max(1);
+        let mut track = Self {
+            instants: Vec::with_capacity(n),
+            recordings: Vec::new(),
+            blocks: Vec::new(),
+            recording_of_block: Vec::new(),
+            counted: Vec::new(),
+        };
+        for (index, instants) in walked.into_iter().enumerate() {
+            let first = track.instants.len();
+            let rows = instants.len();
+            let pieces = ((rows as f64 / per_block as f64).round() as usize).clamp(2, rows.max(2));
+            for piece in 0..pieces {
+                track.blocks.push(first + piece * rows / pieces..first + (piece + 1) * rows / pieces);
+                track.recording_of_block.push(index);
+            }
+            track.recordings.push(first..first + rows);
+            track.instants.extend(instants);
+        }
+        track.counted = track
+            .instants
+            .iter()
+            .map(|instant| instant.settled && instant.force_n.is_finite() && instant.moment.pressure_pa.is_finite())
+            .collect();
+        Ok(track)
+    }
+
+    /// Instants.
+    pub fn n(&self) -> usize {
+        self.instants.len()
+    }
+
+    /// Instants that count.
+    pub fn n_counted(&self) -> usize {
+        self.counted.iter().filter(|&&counted| counted).count()
+    }
+}
