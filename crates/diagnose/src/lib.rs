@@ -3,9 +3,14 @@
 //! In reading order: [`track`] is the recordings on a common grid, [`sheet`] what a [`hypothesis`] makes of it, [`normal`]
 //! and [`joint`] fit base and effects together and judge them on held-out blocks.
 
+pub mod coordinates;
 pub mod hypothesis;
 pub mod joint;
 pub mod normal;
 pub mod sheet;
 mod shift;
+pub mod state;
+mod steps;
+pub mod structure;
 pub mod track;
+pub mod trial;

@@ -18,8 +18,16 @@ pub mod moment;
 pub mod page;
 pub mod slip;
 
+mod prony;
+
+mod load_dependent_friction;
 mod presliding_hysteresis;
+mod pressure_creep;
 mod pressure_lag;
+mod rate_dependent_hysteresis;
+mod rubber_hysteresis;
+mod stribeck;
+mod viscoelastic_relaxation;
 mod viscous_damping;
 
 pub use catalogue::{CATALOGUE, effect};

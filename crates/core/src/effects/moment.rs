@@ -56,6 +56,12 @@ pub struct Base {
     pub slope_n_per_m: f64,
 }
 
+/// `C₁₀ + C₀₁` of latex, in Pa, for effects that need a bladder where the parameters of eq. 11 may be zero.
+///
+/// Source: Klute and Hannaford (2000), "Accounting for elastic energy storage in McKibben artificial muscle
+/// actuators", J. Dynamic Systems, Measurement, and Control 122(2): 118.4 and 105.7 kPa.
+pub const LATEX_PA: f64 = 2.2e5;
+
 impl Base {
     /// What `model` says at a pressure and a length.
     pub fn of(model: &ForceModel, pressure_pa: f64, length_m: f64) -> Self {
@@ -75,5 +81,54 @@ impl Base {
             slope_n_per_m: (force_n(pressure_pa, length_m + STEP_M) - force_n(pressure_pa, length_m - STEP_M))
                 / (2.0 * STEP_M),
         }
+    }
+
+    /// Force of a bladder of latex, in N: negative where it resists contraction.
+    pub fn latex_n(&self) -> f64 {
+        self.bladder_n_per_pa * LATEX_PA
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::Memory;
+    use super::*;
+
+    /// At rest under 0.3 MPa, 27 mm contracted, having come that way.
+    pub(in super::super) fn still() -> Moment {
+        Moment {
+            recording: 0,
+            time_s: 0.0,
+            step_s: 0.0,
+            pressure_pa: 3e5,
+            pressure_rate_pa_per_s: 0.0,
+            length_m: 0.24,
+            contraction_ratio: 0.027 / 0.267,
+            speed_m_per_s: 0.0,
+            acceleration_m_per_s2: 0.0,
+            direction: 1.0,
+            slide_m: 0.027,
+            force_n: 350.0,
+        }
+    }
+
+    /// What eq. 11 says of the nominal muscle there, nearly.
+    pub(in super::super) fn base() -> Base {
+        Base {
+            gas_n: 461.0,
+            bladder_n: -67.0,
+            bladder_n_per_pa: -3e-4,
+            normal_n: 6e3,
+            static_force_n: 368.0,
+            slope_n_per_pa: 1.35e-3,
+            slope_n_per_m: 8e3,
+        }
+    }
+
+    /// Columns of a pull, zero where the effect has fewer.
+    pub(in super::super) fn pull(memory: &mut dyn Memory, now: &Moment, base: &Base) -> [f64; 2] {
+        let mut columns = [0.0; 2];
+        memory.pulls(now, base, &mut columns);
+        columns
     }
 }

@@ -1,0 +1,121 @@
+//! Stribeck effect: friction that is larger at a crawl than in motion.
+//!
+//! ```text
+//! F = F_base - s f_s p π D L exp(-|v| / v_s)
+//! ```
+
+use super::page::{Confusion, Page, Symbol};
+use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::muscle::Muscle;
+
+/// The effect.
+#[derive(Debug)]
+pub(super) struct Stribeck;
+
+impl Effect for Stribeck {
+    fn page(&self) -> &'static Page {
+        &PAGE
+    }
+
+    fn role(&self) -> Role {
+        Role::Pulls
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Muscle
+    }
+
+    fn shape(&self) -> &'static [Shape] {
+        &[Shape {
+            name: "stribeck_speed_m_per_s",
+            unit: "m/s",
+            range: (3e-4, 5e-2),
+            grid: &[1e-3, 2e-3, 5e-3, 1e-2, 2e-2],
+        }]
+    }
+
+    fn amplitudes(&self) -> &'static [Amplitude] {
+        &[Amplitude { name: "static_friction", unit: "1", range: (0.0, 0.02) }]
+    }
+
+    fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
+        Box::new(State { stribeck_speed_m_per_s: shape[0] })
+    }
+}
+
+struct State {
+    stribeck_speed_m_per_s: f64,
+}
+
+impl Memory for State {
+    fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
+        let crawl = (-now.speed_m_per_s.abs() / self.stribeck_speed_m_per_s).exp();
+        columns[0] = -now.direction * base.normal_n * crawl;
+    }
+}
+
+static PAGE: Page = Page {
+    id: "stribeck",
+    name: "Stribeck effect",
+    summary: "Friction of the braid is larger at a crawl than in motion. It falls with the speed over some millimetres \
+              per second and breaks away behind a rest, which makes slow motion under a soft load jerky.",
+    equation: "F = F_base - s f_s p π D L exp(-|v| / v_s)",
+    symbols: &[
+        Symbol {
+            symbol: "f_s",
+            unit: "1",
+            meaning: "friction at a crawl above that in motion, in units of eq. 9; 0.1 to 1 times f'",
+        },
+        Symbol { symbol: "v_s", unit: "m/s", meaning: "speed at which 63 % of it are gone; 1 to 20 mm/s" },
+        Symbol { symbol: "s", unit: "1", meaning: "direction of motion, kept at standstill" },
+        Symbol { symbol: "v", unit: "m/s", meaning: "speed of contraction" },
+    ],
+    validity: "Motion that is long against the pre-sliding distance; the age of a contact at rest is left out.",
+    source: "Tondu and Lopez (2000), IEEE Control Systems 20(2), for threads on threads; Armstrong-Hélouvry, Dupont and \
+             Canudas de Wit (1994), Automatica 30(7)",
+    signature: "The residual is odd in the direction and sits at low speed: half the width of an isobaric loop falls \
+                with the logarithm of the speed. At one constant rate it is only more friction and leaves nothing.",
+    confused_with: &[
+        Confusion {
+            id: "rate-dependent-hysteresis",
+            because: "both change the width of the loop over the logarithm of the speed, with opposite slopes",
+            test: "isobaric triangles at five speeds or more: the width falls, or it rises",
+        },
+        Confusion {
+            id: "viscoelastic-relaxation",
+            because: "a start behind a rest overshoots with both",
+            test: "start again behind rests of 0.1 to 100 s, once onwards and once backwards: relaxation is there during \
+                   the rest already",
+        },
+        Confusion {
+            id: "viscous-damping",
+            because: "too large a damping and too small a friction cancel over a narrow range of speeds",
+            test: "widen the range of speeds to two decades: a falling and then a rising width show both",
+        },
+    ],
+    test: "isobaric triangles at five speeds from 0.5 to 50 mm/s: the width of the loop falls with the speed",
+    protocol: "rate-ladder",
+};
+
+#[cfg(test)]
+mod tests {
+    use super::super::moment::tests::{base, pull, still};
+    use super::*;
+    use crate::muscle::tests::nominal;
+
+    #[test]
+    fn it_falls_from_static_friction_to_nothing() {
+        let mut memory = Stribeck.start(&nominal(), &[5e-3]);
+        let mut at = |speed_m_per_s| pull(&mut *memory, &Moment { speed_m_per_s, ..still() }, &base())[0];
+        assert_eq!(at(0.0), -base().normal_n);
+        assert!((at(5e-3) / at(0.0) - (-1.0_f64).exp()).abs() < 1e-12);
+        assert!(at(1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn it_opposes_the_motion() {
+        let mut memory = Stribeck.start(&nominal(), &[5e-3]);
+        let now = Moment { speed_m_per_s: -1e-3, direction: -1.0, ..still() };
+        assert!(pull(&mut *memory, &now, &base())[0] > 0.0);
+    }
+}

@@ -1,0 +1,145 @@
+//! Candidates tried on top of a state.
+
+use pam_core::effects::{CATALOGUE, Effect, Kind, Seen};
+use rayon::prelude::*;
+
+use crate::hypothesis::Guess;
+use crate::joint::HeldOut;
+use crate::state::{Setting, State};
+use crate::steps;
+
+/// A candidate on top of a state, at its best shape.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    /// The candidate.
+    pub guess: Guess,
+    /// Mean square of the joint fit over everything, in N².
+    pub mean_square: f64,
+    /// Mean squares over held-out blocks.
+    pub held_out: HeldOut,
+    /// `Σ ln(without / with)` over held-out blocks.
+    pub log_ratio: f64,
+}
+
+/// Candidates whose shapes are refined before they are compared.
+const REFINED: usize = 5;
+
+/// Tries every effect of the catalogue that `state` does not have and `excluded` does not name; best first.
+pub fn all(setting: &Setting<'_>, state: &State, before: &HeldOut, seen: &Seen, excluded: &[String]) -> Vec<Trial> {
+    let candidates: Vec<&'static dyn Effect> = CATALOGUE
+        .iter()
+        .copied()
+        .filter(|effect| {
+            let id = effect.page().id;
+            !excluded.iter().any(|excluded| excluded == id) && !state.guesses.iter().any(|guess| guess.id() == id)
+        })
+        .collect();
+    let jobs: Vec<(usize, Guess)> = candidates
+        .iter()
+        .enumerate()
+        .flat_map(|(index, &effect)| {
+            let shapes =
+                if effect.kind() == Kind::Event { steps::shapes(setting, state) } else { effect.first_shapes(seen) };
+            shapes.into_iter().map(move |shape| (index, Guess { effect, shape }))
+        })
+        .collect();
+    let costs: Vec<Option<f64>> = jobs.par_iter().map(|(_, guess)| mean_square(setting, state, guess)).collect();
+    let mut best: Vec<Option<(f64, &Guess)>> = vec![None; candidates.len()];
+    for ((index, guess), cost) in jobs.iter().zip(costs) {
+        if let Some(cost) = cost
+            && best[*index].is_none_or(|(lowest, _)| cost < lowest)
+        {
+            best[*index] = Some((cost, guess));
+        }
+    }
+    let mut found: Vec<(f64, Guess)> = best.into_iter().flatten().map(|(cost, guess)| (cost, guess.clone())).collect();
+    found.sort_by(|left, right| left.0.total_cmp(&right.0));
+    let refined: Vec<(f64, Guess)> = found
+        .par_iter()
+        .enumerate()
+        .map(
+            |(rank, (cost, guess))| {
+                if rank < REFINED { refine(setting, state, guess, *cost, 1) } else { (*cost, guess.clone()) }
+            },
+        )
+        .collect();
+    let mut trials: Vec<Trial> = refined
+        .into_par_iter()
+        .filter_map(|(mean_square, guess)| {
+            let held_out = hold_out(setting, state, &guess)?;
+            let log_ratio = before.log_ratio(&held_out);
+            Some(Trial { guess, mean_square, held_out, log_ratio })
+        })
+        .collect();
+    trials.sort_by(|left, right| right.log_ratio.total_cmp(&left.log_ratio));
+    trials
+}
+
+/// Mean square of the joint fit with one more guess.
+pub fn mean_square(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<f64> {
+    if guess.only_adds() {
+        setting.fit_more(state, guess).map(|fit| fit.mean_square)
+    } else {
+        Some(with(setting, state, guess)?.fit.mean_square)
+    }
+}
+
+/// Mean squares over held-out blocks with one more guess.
+pub fn hold_out(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<HeldOut> {
+    if guess.only_adds() {
+        setting.hold_out_more(state, guess)
+    } else {
+        setting.hold_out(&with(setting, state, guess)?)
+    }
+}
+
+/// `state` with one more guess.
+pub fn with(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<State> {
+    let mut guesses = state.guesses.clone();
+    guesses.push(guess.clone());
+    setting.fit(guesses, &state.fit.x[..setting.space.free.len()], &state.model)
+}
+
+/// Better values of the shape parameters of `guess` on top of `state`, one after the other, `sweeps` times; and the mean
+/// square there.
+pub fn refine(setting: &Setting<'_>, state: &State, guess: &Guess, cost: f64, sweeps: usize) -> (f64, Guess) {
+    let mut best = (cost, guess.clone());
+    if guess.effect.kind() == Kind::Event {
+        return best;
+    }
+    for _ in 0..sweeps {
+        for (index, parameter) in guess.effect.shape().iter().enumerate() {
+            let value = best.1.shape[index];
+            let step = step_around(parameter.grid, parameter.range, value);
+            let mut factor = step;
+            // Each round looks to either side of the best so far, at half the distance of the round before.
+            for _ in 0..3 {
+                for way in [-1.0, 1.0] {
+                    let mut trial = best.1.clone();
+                    trial.shape[index] =
+                        (best.1.shape[index] + way * factor).clamp(parameter.range.0, parameter.range.1);
+                    if let Some(cost) = mean_square(setting, state, &trial)
+                        && cost < best.0
+                    {
+                        best = (cost, trial);
+                    }
+                }
+                factor *= 0.5;
+            }
+        }
+    }
+    best
+}
+
+/// Half the distance to the neighbors of `value` on the grid.
+fn step_around(grid: &[f64], range: (f64, f64), value: f64) -> f64 {
+    let below = grid.iter().copied().filter(|&point| point < value).fold(f64::NAN, f64::max);
+    let above = grid.iter().copied().filter(|&point| point > value).fold(f64::NAN, f64::min);
+    let distance = match (below.is_finite(), above.is_finite()) {
+        (true, true) => (value - below).min(above - value),
+        (true, false) => value - below,
+        (false, true) => (above - value).min(value.abs().max(0.1 * above.abs())),
+        (false, false) => 0.3 * value.abs().max(0.02 * (range.1 - range.0)),
+    };
+    0.5 * distance
+}
