@@ -3,10 +3,12 @@
 //! In reading order: [`track`] is the recordings on a common grid, [`sheet`] what a [`hypothesis`] makes of it, [`normal`]
 //! and [`joint`] fit base and effects together and judge them on held-out blocks.
 
+pub mod base;
 pub mod coordinates;
 pub mod hypothesis;
 pub mod joint;
 pub mod normal;
+pub mod search;
 pub mod sheet;
 mod shift;
 pub mod state;

@@ -1,0 +1,64 @@
+//! Diagnose recordings and print what was weighed.
+#![expect(clippy::unwrap_used, clippy::print_stdout, reason = "an example")]
+
+use pam_core::artifact::ModelArtifact;
+use pam_core::force::columns::ForceColumns;
+use pam_core::recording::{ReadOptions, read_recording};
+use pam_diagnosis::search::{Limits, chance, search};
+use pam_diagnosis::state::Setting;
+use pam_diagnosis::track::Track;
+use pam_identification::prepare::{direct, gate};
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let (model, _) = ModelArtifact::read(std::path::Path::new(&arguments.next().unwrap())).unwrap();
+    let recordings =
+        arguments.map(|path| read_recording(std::path::Path::new(&path), &ReadOptions::default()).unwrap()).collect();
+    let begin = std::time::Instant::now();
+    let gates = gate(recordings).unwrap();
+    let largest = gates.iter().map(|gate| gate.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
+    let prepared = direct(gates, model.direction, model.form).unwrap();
+    let track = Track::of(&prepared, model.direction, model.geometry.rest_length_m).unwrap();
+    let columns = ForceColumns::new(&model.geometry, model.strand_modulus_pa, model.form, largest);
+    let space = pam_diagnosis::base::search_space(&model, &columns);
+    let start = pam_diagnosis::base::coordinates(&model, &space);
+    let setting = Setting {
+        track: &track,
+        columns: &columns,
+        space: &space,
+        muscle: &model.geometry,
+        strand_modulus_pa: model.strand_modulus_pa,
+    };
+    println!("{} instants, {} counted, {} blocks", track.n(), track.n_counted(), track.blocks.len());
+    let limits =
+        Limits { max_effects: 4, excluded: Vec::new(), matters_above_n: None, sensor_floor_n: model.fit.noise_floor_n };
+    let found = search(&setting, &start, &model.force_model(), &limits).unwrap();
+    println!(
+        "base {:.3} N, floor {:.3} N, sensor floor {:.3} N",
+        found.base.held_out.mean_square().sqrt(),
+        found.floor_square.sqrt(),
+        model.fit.noise_floor_n
+    );
+    for trial in &found.first {
+        println!(
+            "  {:28} log ratio {:7.2}  rmse {:7.3}  p {:.1e} {:?}",
+            trial.guess.id(),
+            trial.log_ratio,
+            trial.held_out.mean_square().sqrt(),
+            chance(&found.base.held_out, &trial.held_out),
+            trial.guess.shape
+        );
+    }
+    println!("best {:.3} N: {:?}", found.best.held_out.mean_square().sqrt(), found.best.state.guesses);
+    println!("amplitudes {:?} theta {:?}", found.best.state.fit.amplitudes, found.best.state.fit.parameters.theta);
+    for (guess, taken) in found.best.state.guesses.iter().zip(&found.taken) {
+        println!("without {} {:.3} N", guess.id(), taken.without.mean_square().sqrt());
+        for rival in taken.rivals.iter().take(4) {
+            println!("    {:28} {:.2} {:.3}", rival.guess.id(), rival.log_ratio, rival.held_out.mean_square().sqrt());
+        }
+    }
+    if let Some(left) = &found.left {
+        println!("left unnamed: {:.3} N", left.held_out.mean_square().sqrt());
+    }
+    println!("{:?}", begin.elapsed());
+}

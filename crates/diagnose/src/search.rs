@@ -1,0 +1,234 @@
+//! Which effects, if any: forward one at a time, with a second look at each that was taken.
+
+use pam_core::effects::Seen;
+
+use crate::coordinates::Coordinates;
+use crate::joint::HeldOut;
+use crate::state::{Setting, State};
+use crate::structure::{Feature, Remainder, Structure, features};
+use crate::trial::{self, Trial};
+
+/// Limits of a search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits {
+    /// Most effects that may be taken.
+    pub max_effects: usize,
+    /// Catalogue ids that are not considered.
+    pub excluded: Vec<String>,
+    /// Excess over the noise floor that matters, in N; none for half of the floor.
+    pub matters_above_n: Option<f64>,
+    /// What sensor noise alone leaves at the full rate, in N.
+    pub sensor_floor_n: f64,
+}
+
+/// A hypothesis with what it leaves.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// The hypothesis, fitted.
+    pub state: State,
+    /// Mean squares over held-out blocks.
+    pub held_out: HeldOut,
+}
+
+/// What a search found.
+#[derive(Debug)]
+pub struct Found {
+    /// The base model alone.
+    pub base: Judged,
+    /// Base and effects; the base alone where nothing was taken.
+    pub best: Judged,
+    /// What was taken with, for each, what would be left without it (everything else refitted).
+    pub taken: Vec<Taken>,
+    /// The first look: every candidate alone.
+    pub first: Vec<Trial>,
+    /// Coordinates of every instant.
+    pub coordinates: Coordinates,
+    /// Features over them.
+    pub features: Vec<Feature>,
+    /// What no model, named or not, gets below: mean square over held-out blocks, in N².
+    pub floor_square: f64,
+    /// Structure that is left.
+    pub left: Option<Structure>,
+}
+
+/// An effect that was taken.
+#[derive(Debug, Clone)]
+pub struct Taken {
+    /// Mean squares over held-out blocks without it.
+    pub without: HeldOut,
+    /// Other effects in its place, best first.
+    pub rivals: Vec<Trial>,
+}
+
+/// Share of the mismatch that an effect must explain to be taken beside others.
+const LEAST_SHARE: f64 = 0.04;
+/// Share of the blocks that an effect must improve by chance alone one time in a thousand.
+const CHANCE: f64 = 1e-3;
+
+/// Searches.
+pub fn search(
+    setting: &Setting<'_>,
+    start: &[f64],
+    model: &pam_core::force::ForceModel,
+    limits: &Limits,
+) -> Option<Found> {
+    let state = setting.fit(Vec::new(), start, model)?;
+    let held_out = setting.hold_out(&state)?;
+    let base = Judged { state, held_out };
+    let coordinates = Coordinates::of(setting.track, &base.state.sheet);
+    let features = features(setting, &coordinates);
+    let seen = seen(setting);
+    let every: Vec<&Feature> = features.iter().collect();
+    let unnamed = Remainder::of(setting, &base.state).structure(&every);
+    let mut floor_square = base.held_out.mean_square();
+    if let Some(unnamed) = &unnamed {
+        floor_square = floor_square.min(unnamed.held_out.mean_square());
+    }
+    let mut best = base.clone();
+    let mut first = Vec::new();
+    for round in 0..limits.max_effects {
+        let trials = trial::all(setting, &best.state, &best.held_out, &seen, &limits.excluded);
+        if round == 0 {
+            first.clone_from(&trials);
+        }
+        for trial in &trials {
+            floor_square = floor_square.min(trial.held_out.mean_square());
+        }
+        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &best, &base, floor_square, limits)) else {
+            break;
+        };
+        let Some(next) = settle(setting, &best, &chosen) else { break };
+        best = next;
+        if round > 0 {
+            best = second_look(setting, best, &seen, limits);
+        }
+        floor_square = floor_square.min(best.held_out.mean_square());
+    }
+    let mut taken = Vec::new();
+    for index in 0..best.state.guesses.len() {
+        let Some((without, rivals)) = without(setting, &best, index, &seen, limits) else { continue };
+        taken.push(Taken { without: without.held_out, rivals });
+    }
+    let left = Remainder::of(setting, &best.state).structure(&every);
+    if let Some(left) = &left {
+        floor_square = floor_square.min(left.held_out.mean_square());
+    }
+    Some(Found { base, best, taken, first, coordinates, features, floor_square, left })
+}
+
+/// Whether a trial gains more than chance and more than what does not matter.
+fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits: &Limits) -> bool {
+    let gained = best.held_out.mean_square() - trial.held_out.mean_square();
+    let mismatch = base.held_out.mean_square() - floor_square;
+    let full_floor = floor_square + limits.sensor_floor_n.powi(2);
+    let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
+    gained > LEAST_SHARE * mismatch && gained > matters && chance(&best.held_out, &trial.held_out) < CHANCE
+}
+
+/// Probability that an improvement of held-out blocks is chance: a t-test on the log ratios of the blocks that it touches.
+pub fn chance(without: &HeldOut, with: &HeldOut) -> f64 {
+    let ratios: Vec<f64> = without.log_ratios(with).filter(|ratio| ratio.abs() > 1e-3).collect();
+    let n = ratios.len() as f64;
+    if n < 3.0 {
+        return 1.0;
+    }
+    let mean = ratios.iter().sum::<f64>() / n;
+    let variance = ratios.iter().map(|ratio| (ratio - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let t = mean / (variance / n).sqrt().max(1e-12);
+    upper_tail(t)
+}
+
+/// Probability that a standard normal variable exceeds `t` (Abramowitz and Stegun, 7.1.26).
+fn upper_tail(t: f64) -> f64 {
+    let x = t.abs() / std::f64::consts::SQRT_2;
+    let k = 1.0 / (1.0 + 0.327_591_1 * x);
+    let series =
+        k * (0.254_829_592 + k * (-0.284_496_736 + k * (1.421_413_741 + k * (-1.453_152_027 + k * 1.061_405_429))));
+    let half = 0.5 * series * (-x * x).exp();
+    if t >= 0.0 { half } else { 1.0 - half }
+}
+
+/// Takes a trial: joint fit, shapes of everything refined once more.
+fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Option<Judged> {
+    let (_, guess) = trial::refine(setting, &best.state, &chosen.guess, chosen.mean_square, 1);
+    let mut state = trial::with(setting, &best.state, &guess)?;
+    if state.guesses.len() > 1 {
+        state = refine_all(setting, state)?;
+    }
+    // What effects take of the base follows the new parameters.
+    let state = setting.fit(state.guesses.clone(), &state.fit.x[..setting.space.free.len()], &state.model)?;
+    let held_out = setting.hold_out(&state)?;
+    Some(Judged { state, held_out })
+}
+
+/// Refines the shapes of all effects, each with the others as they are.
+fn refine_all(setting: &Setting<'_>, state: State) -> Option<State> {
+    let mut state = state;
+    for index in 0..state.guesses.len() {
+        let guess = state.guesses[index].clone();
+        let mut others = state.guesses.clone();
+        others.remove(index);
+        let rest = setting.fit(others, &state.fit.x[..setting.space.free.len()], &state.model)?;
+        let cost = trial::mean_square(setting, &rest, &guess)?;
+        let (_, guess) = trial::refine(setting, &rest, &guess, cost, 1);
+        let mut guesses = rest.guesses.clone();
+        guesses.insert(index, guess);
+        state = setting.fit(guesses, &state.fit.x[..setting.space.free.len()], &state.model)?;
+    }
+    Some(state)
+}
+
+/// `best` without effect `index`, and what else could stand in its place.
+fn without(
+    setting: &Setting<'_>,
+    best: &Judged,
+    index: usize,
+    seen: &Seen,
+    limits: &Limits,
+) -> Option<(Judged, Vec<Trial>)> {
+    let mut others = best.state.guesses.clone();
+    others.remove(index);
+    let state = setting.fit(others, &best.state.fit.x[..setting.space.free.len()], &best.state.model)?;
+    let held_out = setting.hold_out(&state)?;
+    let judged = Judged { state, held_out };
+    let rivals = trial::all(setting, &judged.state, &judged.held_out, seen, &limits.excluded);
+    Some((judged, rivals))
+}
+
+/// Looks at every effect that was taken once more: another one in its place, or none.
+fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, limits: &Limits) -> Judged {
+    let mut best = best;
+    for index in 0..best.state.guesses.len() {
+        let Some((rest, rivals)) = without(setting, &best, index, seen, limits) else { continue };
+        let Some(rival) = rivals.first() else { continue };
+        let own = rest.held_out.log_ratio(&best.held_out);
+        // As good is not better.
+        if rival.log_ratio > own + 0.02 * own.abs() + 0.1
+            && rival.guess.id() != best.state.guesses[index].id()
+            && let Some(next) = settle(setting, &rest, rival)
+        {
+            best = next;
+        }
+    }
+    best
+}
+
+/// What the track covers.
+fn seen(setting: &Setting<'_>) -> Seen {
+    let range = |value: fn(&pam_core::motion::Instant) -> f64| {
+        setting
+            .track
+            .instants
+            .iter()
+            .zip(&setting.track.counted)
+            .filter(|(_, counted)| **counted)
+            .map(|(instant, _)| value(instant))
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+    };
+    Seen {
+        contraction_ratio: range(|instant| instant.moment.contraction_ratio),
+        pressure_pa: range(|instant| instant.moment.pressure_pa),
+        force_n: range(|instant| instant.force_n),
+        duration_s: range(|instant| instant.moment.time_s).1,
+    }
+}
