@@ -1,19 +1,41 @@
 //! Every effect: instruments, the bench around the muscle, the muscle, events.
 
 use super::Effect;
+use super::braid_lockup::BraidLockup;
+use super::channel_delay::ChannelDelay;
+use super::end_taper::EndTaper;
+use super::fatigue_wear::FatigueWear;
+use super::force_drift::ForceDrift;
+use super::force_step::ForceStep;
+use super::inertia::Inertia;
 use super::load_dependent_friction::LoadDependentFriction;
+use super::mullins_softening::MullinsSoftening;
 use super::presliding_hysteresis::PreslidingHysteresis;
 use super::pressure_creep::PressureCreep;
+use super::pressure_gauge_hysteresis::PressureGaugeHysteresis;
 use super::pressure_lag::PressureLag;
 use super::rate_dependent_hysteresis::RateDependentHysteresis;
 use super::rubber_hysteresis::RubberHysteresis;
+use super::series_compliance::SeriesCompliance;
+use super::slack::Slack;
 use super::stribeck::Stribeck;
+use super::thermal_softening::ThermalSoftening;
+use super::threshold_pressure::ThresholdPressure;
 use super::viscoelastic_relaxation::ViscoelasticRelaxation;
 use super::viscous_damping::ViscousDamping;
 
 /// Every effect that a diagnosis may name.
 pub static CATALOGUE: &[&dyn Effect] = &[
+    &ChannelDelay,
+    &PressureGaugeHysteresis,
+    &ForceDrift,
+    &SeriesCompliance,
+    &Inertia,
+    &Slack,
     &PressureLag,
+    &ThresholdPressure,
+    &EndTaper,
+    &BraidLockup,
     &PreslidingHysteresis,
     &RubberHysteresis,
     &Stribeck,
@@ -22,6 +44,10 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &ViscousDamping,
     &ViscoelasticRelaxation,
     &PressureCreep,
+    &MullinsSoftening,
+    &ThermalSoftening,
+    &FatigueWear,
+    &ForceStep,
 ];
 
 /// The effect with a catalogue id.
