@@ -13,6 +13,7 @@
 //! muscle had long been there and had come slowly, in the present direction. So one moment alone gives the
 //! static force, and a row of them the history, in a recording as in a simulation.
 
+pub mod augmented;
 mod catalogue;
 pub mod moment;
 pub mod page;
@@ -43,6 +44,7 @@ mod threshold_pressure;
 mod viscoelastic_relaxation;
 mod viscous_damping;
 
+pub use augmented::{AugmentedMemory, AugmentedModel, Term};
 pub use catalogue::{CATALOGUE, effect};
 pub use moment::{Base, Moment};
 pub use page::{Page, Symbol};

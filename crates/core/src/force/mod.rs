@@ -193,6 +193,16 @@ impl ForceModel {
         self.form
     }
 
+    /// Kinematics of the braid.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
+    /// Bladder term, without its parameters.
+    pub fn bladder(&self) -> &bladder::Bladder {
+        &self.bladder
+    }
+
     /// Values of the parameters.
     pub fn parameters(&self) -> &BaseParameters {
         &self.parameters
