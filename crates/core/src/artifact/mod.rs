@@ -3,6 +3,7 @@
 //! Every artifact begins with `schema`, `tool`, `inputs`, `config` and `seed`. Equal inputs give equal bytes on
 //! any thread count; time stamps stay out.
 
+mod effect_entry;
 pub mod inverse;
 pub mod model;
 
