@@ -4,6 +4,7 @@
 //! any thread count; time stamps stay out.
 
 pub mod diagnosis;
+mod effect_entry;
 pub mod inverse;
 pub mod model;
 

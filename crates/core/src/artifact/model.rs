@@ -5,8 +5,10 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use super::effect_entry::EffectEntry;
 use super::{ArtifactError, Input, Tool};
 use crate::direction::Thresholds;
+use crate::effects::{AugmentedModel, Kind};
 use crate::force::{BaseParameters, ForceModel, Form, Parameter};
 use crate::muscle::Muscle;
 use crate::quality::RecordingQuality;
@@ -145,16 +147,6 @@ pub struct CompositeEntry {
     pub stderr: Option<f64>,
     /// Why the members cannot be told apart, in words.
     pub reason: String,
-}
-
-/// An effect beyond eq. 11.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct EffectEntry {
-    /// Catalogue id.
-    pub id: String,
-    /// Its parameters.
-    pub parameters: Vec<ParameterEntry>,
 }
 
 /// Correlation between estimates.
@@ -311,8 +303,13 @@ impl ModelArtifact {
         if dimensions.iter().any(|&value| value <= 0.0) || self.strand_modulus_pa <= 0.0 {
             return Err("a dimension of the muscle is not positive".to_owned());
         }
-        if let Some(effect) = self.effects.first() {
-            return Err(format!("effect \"{}\" is unknown to this version", effect.id));
+        for (index, entry) in self.effects.iter().enumerate() {
+            let term = entry.term()?;
+            // Events may come again; what belongs to muscle or bench is there or not.
+            let again = self.effects[..index].iter().any(|other| other.id == entry.id);
+            if again && term.effect.kind() != Kind::Event {
+                return Err(format!("effect {} stands there twice", entry.id));
+            }
         }
         Ok(())
     }
@@ -322,12 +319,164 @@ impl ModelArtifact {
         self.parameters.iter().find(|entry| entry.name == name).map_or(f64::NAN, |entry| entry.value)
     }
 
-    /// Eq. 11 with the values of the artifact.
+    /// Eq. 11 with the values of the artifact, without the effects beyond it.
     pub fn force_model(&self) -> ForceModel {
         let mut parameters = BaseParameters { theta: [0.0; 8] };
         for parameter in Parameter::ALL {
             parameters.theta[parameter.index()] = parameter.from_artifact(self.value(parameter));
         }
         ForceModel::new(&self.geometry, self.strand_modulus_pa, self.form, parameters)
+    }
+
+    /// Eq. 11 with the effects of the artifact, in their order.
+    ///
+    /// # Panics
+    /// Where an effect is not of the catalogue or a parameter of it is missing or out of range, which
+    /// [`read`](Self::read) refuses.
+    pub fn augmented_model(&self) -> AugmentedModel {
+        let terms = self.effects.iter().map(|entry| entry.term().expect("effects as checked")).collect();
+        AugmentedModel::new(self.force_model(), terms)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::muscle::tests::nominal;
+
+    fn parameter(name: &str, value: f64, unit: &str) -> ParameterEntry {
+        ParameterEntry {
+            name: name.to_owned(),
+            value,
+            unit: unit.to_owned(),
+            stderr: None,
+            status: ParameterStatus::Fitted,
+        }
+    }
+
+    fn effect(id: &str, parameters: Vec<ParameterEntry>) -> EffectEntry {
+        EffectEntry { id: id.to_owned(), parameters }
+    }
+
+    fn artifact(effects: Vec<EffectEntry>) -> ModelArtifact {
+        let statistics = FitStatistics {
+            rmse_n: 1.0,
+            rmse_all_n: 1.0,
+            max_n: 3.0,
+            r2: 0.999,
+            fit_percent: 99.0,
+            n_samples: 1000,
+            n_unsettled: 0,
+        };
+        let values = [0.9, 1.05, 2.0, 118.4e3, 105.7e3, 3e9, 1.2e-3, 0.0];
+        ModelArtifact {
+            schema: SCHEMA.to_owned(),
+            tool: Tool { name: "pam-identify".to_owned(), version: "0.1.0".to_owned() },
+            inputs: Vec::new(),
+            config: IdentifyConfig {
+                n_particles: 60,
+                n_iterations: 200,
+                n_starts: 4,
+                polish: true,
+                loss: Loss::Square,
+                freed: Vec::new(),
+                fixed: Vec::new(),
+                bladder_ratio: 0.89,
+            },
+            seed: 1,
+            geometry: nominal(),
+            strand_modulus_pa: 3e9,
+            form: Form::Corrected,
+            parameters: Parameter::ALL
+                .into_iter()
+                .zip(values)
+                .map(|(known, value)| parameter(known.artifact_name(), value, known.unit()))
+                .collect(),
+            composites: Vec::new(),
+            effects,
+            correlation: Correlation { names: Vec::new(), matrix: Vec::new() },
+            fit: FitReport {
+                estimation: statistics,
+                validation: None,
+                recordings: Vec::new(),
+                noise_floor_n: 0.9,
+                force_noise_n: 0.2,
+                effective_samples: 500.0,
+            },
+            domain: Domain {
+                pressure_pa: [500.0, 5e5],
+                length_m: [0.211, 0.268],
+                force_n: [4.5, 1119.0],
+                length_rate_m_per_s: 0.03,
+                pressure_rate_pa_per_s: 2.9e5,
+            },
+            direction: Thresholds { length_m: 150e-6, pressure_pa: 2.5e3 },
+            quality: Vec::new(),
+            search: SearchReport { starts: Vec::new(), converged: true, column_floor_rmse_n: 1.0 },
+            unbounded: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    fn rubber(width_n: f64) -> EffectEntry {
+        // The order of the parameters does not matter.
+        effect("rubber-hysteresis", vec![parameter("width_n", width_n, "N"), parameter("slip_distance_m", 1e-3, "m")])
+    }
+
+    #[test]
+    fn effects_come_on_top_of_eq_11() {
+        let artifact = artifact(vec![rubber(7.0)]);
+        artifact.check().expect("a plausible artifact");
+        let model = artifact.augmented_model();
+        assert_eq!(
+            (model.terms()[0].shape.as_slice(), model.terms()[0].amplitudes.as_slice()),
+            (&[1e-3][..], &[7.0][..])
+        );
+        let difference_n = model.settled_force_n(3e5, 0.24, 1.0) - artifact.force_model().force_n(3e5, 0.24, 1.0);
+        assert!((difference_n + 7.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_artifact_survives_its_own_text_with_effects() {
+        let artifact = artifact(vec![rubber(7.0)]);
+        let text = serde_json::to_string(&artifact).expect("an artifact is JSON");
+        assert_eq!(serde_json::from_str::<ModelArtifact>(&text).expect("its own text"), artifact);
+    }
+
+    #[test]
+    fn what_the_catalogue_does_not_have_is_refused_by_name() {
+        let refusal = |effects| artifact(effects).check().expect_err("a refusal");
+        let one = |entries| refusal(vec![effect("rubber-hysteresis", entries)]);
+        let width = || parameter("width_n", 7.0, "N");
+        let distance = || parameter("slip_distance_m", 1e-3, "m");
+        let messages = [
+            refusal(vec![effect("stribek", vec![])]),
+            one(vec![width()]),
+            one(vec![width(), distance(), parameter("slope", 1.0, "1")]),
+            one(vec![width(), width(), distance()]),
+            one(vec![width(), parameter("slip_distance_m", 1.0, "mm")]),
+            one(vec![parameter("width_n", -7.0, "N"), distance()]),
+            one(vec![parameter("width_n", f64::NAN, "N"), distance()]),
+            refusal(vec![rubber(7.0), rubber(8.0)]),
+        ];
+        insta::assert_snapshot!(messages.join("\n"), @r#"
+        effect "stribek" is unknown; the nearest are stribeck, slack, inertia
+        effect rubber-hysteresis lacks its parameter slip_distance_m
+        effect rubber-hysteresis has no parameter slope; it has slip_distance_m, width_n
+        parameter width_n of effect rubber-hysteresis stands there twice
+        parameter slip_distance_m of effect rubber-hysteresis is in mm; write it in m
+        parameter width_n of effect rubber-hysteresis is -7; physics allows 0 to 200 N
+        parameter width_n of effect rubber-hysteresis is NaN; physics allows 0 to 200 N
+        effect rubber-hysteresis stands there twice
+        "#);
+    }
+
+    #[test]
+    fn events_may_come_again() {
+        let step = |instant_s| {
+            let values = [("recording", 0.0, "1"), ("instant_s", instant_s, "s"), ("step_n", 2.0, "N")];
+            effect("force-step", values.map(|(name, value, unit)| parameter(name, value, unit)).to_vec())
+        };
+        artifact(vec![step(3.0), step(9.0)]).check().expect("two events");
     }
 }

@@ -13,6 +13,7 @@
 //! muscle had long been there and had come slowly, in the present direction. So one moment alone gives the
 //! static force, and a row of them the history, in a recording as in a simulation.
 
+pub mod augmented;
 mod catalogue;
 pub mod moment;
 pub mod page;
@@ -20,16 +21,30 @@ pub mod slip;
 
 mod prony;
 
+mod braid_lockup;
+mod channel_delay;
+mod end_taper;
+mod fatigue_wear;
+mod force_drift;
+mod force_step;
+mod inertia;
 mod load_dependent_friction;
+mod mullins_softening;
 mod presliding_hysteresis;
 mod pressure_creep;
+mod pressure_gauge_hysteresis;
 mod pressure_lag;
 mod rate_dependent_hysteresis;
 mod rubber_hysteresis;
+mod series_compliance;
+mod slack;
 mod stribeck;
+mod thermal_softening;
+mod threshold_pressure;
 mod viscoelastic_relaxation;
 mod viscous_damping;
 
+pub use augmented::{AugmentedMemory, AugmentedModel, Term};
 pub use catalogue::{CATALOGUE, effect};
 pub use moment::{Base, Moment};
 pub use page::{Page, Symbol};
@@ -130,6 +145,11 @@ pub trait Effect: Sync {
                 .collect();
         }
         shapes
+    }
+
+    /// Whether its pull needs the slopes of [`Base`], which cost four more evaluations of eq. 11.
+    fn uses_slopes(&self) -> bool {
+        false
     }
 
     /// By how much the channels of pressure and length are late behind the force, in s; [`Role::Shift`].

@@ -1,6 +1,8 @@
 //! The muscle at one instant, as effects see it.
 
-use crate::force::ForceModel;
+use crate::force::rubber_friction::normal_force_n;
+use crate::force::{ForceModel, Parameter, Terms};
+use crate::muscle::Muscle;
 
 /// Channels and what follows from them at one instant, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +46,8 @@ pub struct Base {
     /// Bladder, with its sign (negative where it resists contraction), in N.
     pub bladder_n: f64,
     /// Bladder per pascal of `C₁₀` and of `C₀₁` together, shared as in the model; the shape of the bladder's force
-    /// even where its parameters are zero, in N per Pa.
+    /// even where its parameters are zero, in N per Pa. Negative where rubber resists contraction, however eq. 11
+    /// is written.
     pub bladder_n_per_pa: f64,
     /// `p π D L`: what presses bladder and strands together, in N.
     pub normal_n: f64,
@@ -62,24 +65,62 @@ pub struct Base {
 /// actuators", J. Dynamic Systems, Measurement, and Control 122(2): 118.4 and 105.7 kPa.
 pub const LATEX_PA: f64 = 2.2e5;
 
+/// Share of `C₁₀` in the same.
+const LATEX_C10_SHARE: f64 = 118.4 / (118.4 + 105.7);
+
+/// Steps of central differences, in Pa and in m: far above rounding, far below any bend of eq. 11.
+const STEP_PA: f64 = 100.0;
+const STEP_M: f64 = 1e-5;
+
+impl Moment {
+    /// A muscle that has long been there and came slowly in `direction`; no force is known yet.
+    pub fn settled(muscle: &Muscle, pressure_pa: f64, length_m: f64, direction: f64) -> Self {
+        Self {
+            recording: 0,
+            time_s: 0.0,
+            step_s: 0.0,
+            pressure_pa,
+            pressure_rate_pa_per_s: 0.0,
+            length_m,
+            contraction_ratio: muscle.contraction_ratio(length_m),
+            speed_m_per_s: 0.0,
+            acceleration_m_per_s2: 0.0,
+            direction,
+            slide_m: muscle.rest_length_m - length_m,
+            force_n: 0.0,
+        }
+    }
+}
+
 impl Base {
-    /// What `model` says at a pressure and a length.
+    /// What `model` says at a gauge pressure and a length.
     pub fn of(model: &ForceModel, pressure_pa: f64, length_m: f64) -> Self {
-        const STEP_PA: f64 = 1e2;
-        const STEP_M: f64 = 1e-5;
-        let terms = model.terms(pressure_pa, length_m, 0.0);
-        let force_n = |pressure_pa: f64, length_m: f64| model.force_n(pressure_pa, length_m, 0.0);
-        let shape = model.bladder_n_per_pa(length_m);
+        let static_n = |pressure_pa, length_m| model.force_n(pressure_pa, length_m, 0.0);
+        let base = Self::from_terms(model, pressure_pa, length_m, &model.terms(pressure_pa, length_m, 0.0));
+        Self {
+            slope_n_per_pa: (static_n(pressure_pa + STEP_PA, length_m) - static_n(pressure_pa - STEP_PA, length_m))
+                / (2.0 * STEP_PA),
+            slope_n_per_m: (static_n(pressure_pa, length_m + STEP_M) - static_n(pressure_pa, length_m - STEP_M))
+                / (2.0 * STEP_M),
+            ..base
+        }
+    }
+
+    /// The same without the slopes, which stay zero, from terms that are known already.
+    pub fn from_terms(model: &ForceModel, pressure_pa: f64, length_m: f64, terms: &Terms) -> Self {
+        let parameters = model.parameters();
+        let (c10_pa, c01_pa) = (parameters.of(Parameter::C10), parameters.of(Parameter::C01));
+        let sum_pa = c10_pa + c01_pa;
+        let share = if sum_pa > 0.0 { c10_pa / sum_pa } else { LATEX_C10_SHARE };
+        let [by_c10, by_c01] = model.bladder().columns_n_per_pa(length_m);
         Self {
             gas_n: terms.gas_n,
             bladder_n: terms.bladder_n,
-            bladder_n_per_pa: shape,
-            normal_n: model.normal_n(pressure_pa, length_m),
-            static_force_n: terms.force_n(),
-            slope_n_per_pa: (force_n(pressure_pa + STEP_PA, length_m) - force_n(pressure_pa - STEP_PA, length_m))
-                / (2.0 * STEP_PA),
-            slope_n_per_m: (force_n(pressure_pa, length_m + STEP_M) - force_n(pressure_pa, length_m - STEP_M))
-                / (2.0 * STEP_M),
+            bladder_n_per_pa: share * by_c10 + (1.0 - share) * by_c01,
+            normal_n: normal_force_n(pressure_pa, model.kinematics().diameter_m(length_m), length_m),
+            static_force_n: terms.gas_n + terms.offset_n + terms.bladder_n + terms.braid_n,
+            slope_n_per_pa: 0.0,
+            slope_n_per_m: 0.0,
         }
     }
 
@@ -93,6 +134,8 @@ impl Base {
 pub(super) mod tests {
     use super::super::Memory;
     use super::*;
+    use crate::force::{BaseParameters, Form};
+    use crate::muscle::tests::nominal;
 
     /// At rest under 0.3 MPa, 27 mm contracted, having come that way.
     pub(in super::super) fn still() -> Moment {
@@ -130,5 +173,32 @@ pub(super) mod tests {
         let mut columns = [0.0; 2];
         memory.pulls(now, base, &mut columns);
         columns
+    }
+
+    fn model(c10_pa: f64, c01_pa: f64) -> ForceModel {
+        let parameters = BaseParameters { theta: [0.9, 1.05, 2.0, c10_pa, c01_pa, 1.0 / 3e9, 1.2e-3, 0.0] };
+        ForceModel::new(&nominal(), 3e9, Form::Corrected, parameters)
+    }
+
+    #[test]
+    fn base_is_eq_11_without_friction() {
+        let model = model(118.4e3, 105.7e3);
+        let base = Base::of(&model, 3e5, 0.24);
+        assert!((base.static_force_n - model.force_n(3e5, 0.24, 0.0)).abs() < 1e-9);
+        let friction_n = model.force_n(3e5, 0.24, -1.0) - base.static_force_n;
+        assert!((1.2e-3 * base.normal_n - friction_n).abs() < 1e-9);
+        assert!((base.bladder_n_per_pa * 224.1e3 - base.bladder_n).abs() < 1e-9);
+        // The published 1.35 N/kPa and 8 N/mm at a contraction of 0.1 and 0.3 MPa.
+        assert!((base.slope_n_per_pa - 1.35e-3).abs() < 0.05e-3, "{}", base.slope_n_per_pa);
+        assert!((base.slope_n_per_m - 8e3).abs() < 1e3, "{}", base.slope_n_per_m);
+    }
+
+    #[test]
+    fn a_bladder_has_a_shape_even_where_eq_11_has_none() {
+        let without = Base::of(&model(0.0, 0.0), 3e5, 0.24);
+        let with = Base::of(&model(118.4e3, 105.7e3), 3e5, 0.24);
+        assert_eq!(without.bladder_n, 0.0);
+        assert!((without.bladder_n_per_pa / with.bladder_n_per_pa - 1.0).abs() < 1e-12);
+        assert!(with.latex_n() < 0.0);
     }
 }

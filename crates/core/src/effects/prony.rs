@@ -57,7 +57,6 @@ impl Overstress {
 }
 
 impl State {
-    #[expect(clippy::float_cmp, reason = "equal steps of a recording are equal to the bit or not worth remembering")]
     fn follow(&mut self, step_s: f64, change_n: f64) {
         if step_s != self.step_s {
             let ratio = step_s / self.time_constant_s;

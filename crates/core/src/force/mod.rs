@@ -193,6 +193,16 @@ impl ForceModel {
         self.form
     }
 
+    /// Kinematics of the braid.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
+    /// Bladder term, without its parameters.
+    pub fn bladder(&self) -> &bladder::Bladder {
+        &self.bladder
+    }
+
     /// Values of the parameters.
     pub fn parameters(&self) -> &BaseParameters {
         &self.parameters
@@ -214,20 +224,6 @@ impl ForceModel {
             braid_n: -self.braid.force_n(pressure_pa, length_m, compliance_per_pa),
             friction_n: -direction * friction_n,
         }
-    }
-
-    /// Force of the bladder per pascal of `C₁₀ + C₀₁`, shared as the parameters are and evenly where both are zero, in
-    /// N/Pa, with the sign of the form.
-    pub fn bladder_n_per_pa(&self, length_m: f64) -> f64 {
-        let [by_c10, by_c01] = self.bladder.columns_n_per_pa(length_m);
-        let (c10_pa, c01_pa) = (self.parameters.of(Parameter::C10), self.parameters.of(Parameter::C01));
-        let share = if c10_pa + c01_pa > 0.0 { c10_pa / (c10_pa + c01_pa) } else { 0.5 };
-        self.form.bladder_sign() * (share * by_c10 + (1.0 - share) * by_c01)
-    }
-
-    /// `p π D L`: what presses the bladder against the strands, in N.
-    pub fn normal_n(&self, pressure_pa: f64, length_m: f64) -> f64 {
-        rubber_friction::normal_force_n(pressure_pa, self.kinematics.diameter_m(length_m), length_m)
     }
 
     /// Force of the muscle, in N; see [`terms`](Self::terms).

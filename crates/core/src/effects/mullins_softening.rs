@@ -1,0 +1,136 @@
+//! Mullins softening: rubber is softer below the largest stretch that it has seen.
+//!
+//! ```text
+//! F = F_base - d f [1 - exp(-(ε_m - ε) / ε_c)],   ε_m = max ε so far,   f = V_r dW/dL of latex
+//! ```
+
+use super::page::{Confusion, Page, Symbol};
+use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::muscle::Muscle;
+
+/// The effect.
+#[derive(Debug)]
+pub(super) struct MullinsSoftening;
+
+impl Effect for MullinsSoftening {
+    fn page(&self) -> &'static Page {
+        &PAGE
+    }
+
+    fn role(&self) -> Role {
+        Role::Pulls
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Muscle
+    }
+
+    fn shape(&self) -> &'static [Shape] {
+        &[Shape { name: "softening_contraction", unit: "1", range: (3e-3, 0.3), grid: &[0.01, 0.03, 0.1] }]
+    }
+
+    fn amplitudes(&self) -> &'static [Amplitude] {
+        &[Amplitude { name: "softening", unit: "1", range: (0.0, 1.5) }]
+    }
+
+    fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
+        Box::new(State { softening_contraction: shape[0], largest: f64::NEG_INFINITY })
+    }
+}
+
+struct State {
+    softening_contraction: f64,
+    /// Largest contraction of the recording; gaps do not heal the rubber.
+    largest: f64,
+}
+
+impl Memory for State {
+    fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
+        self.largest = self.largest.max(now.contraction_ratio);
+        let below = (self.largest - now.contraction_ratio) / self.softening_contraction;
+        columns[0] = base.latex_n() * (-below).exp_m1();
+    }
+}
+
+static PAGE: Page = Page {
+    id: "mullins-softening",
+    name: "Mullins softening of the bladder",
+    summary: "Rubber is softer where it has been stretched further before. The first inflation to a new contraction \
+              meets the full resistance of the bladder, and every later cycle below it meets less.",
+    equation: "F = F_base - d f (1 - exp(-(ε_m - ε) / ε_c)),  ε_m = largest contraction so far",
+    symbols: &[
+        Symbol {
+            symbol: "d",
+            unit: "1",
+            meaning: "softening far below the largest contraction, in units of f; 0.02 to 0.1 for latex, 0.1 to 0.3 for \
+                      filled rubber",
+        },
+        Symbol {
+            symbol: "ε_c",
+            unit: "1",
+            meaning: "contraction below the largest at which 63 % are there; 0.01 to 0.1",
+        },
+        Symbol {
+            symbol: "f",
+            unit: "N",
+            meaning: "force of a bladder of latex, C₁₀ + C₀₁ = 0.22 MPa, whatever the fitted bladder is",
+        },
+        Symbol { symbol: "ε_m", unit: "1", meaning: "largest contraction since the recording began" },
+    ],
+    validity: "A recording that begins with rubber fresh or rested for a day; what earlier recordings have softened \
+               already does not show. No recovery within hours.",
+    source: "Mullins (1948); Ogden and Roxburgh (1999), Proc. Royal Society A 455, simplified to one exponential over the \
+             contraction",
+    signature: "The first cycle to each new contraction differs from the second at the same pressure and length, the \
+                later ones agree; the difference has the shape of the bladder's force and ignores the pressure.",
+    confused_with: &[
+        Confusion {
+            id: "viscoelastic-relaxation",
+            because: "the first cycle of rested rubber differs from the later ones as well",
+            test: "rest for ten minutes and repeat: relaxation comes back, softening does not",
+        },
+        Confusion {
+            id: "thermal-softening",
+            because: "both soften the bladder while the muscle works",
+            test: "rest for half an hour and repeat: warm rubber has cooled down, softened rubber has not healed",
+        },
+        Confusion {
+            id: "rubber-hysteresis",
+            because: "in a single cycle both take another path back",
+            test: "a second cycle to the same contraction: hysteresis opens the same loop again, softening does not",
+        },
+    ],
+    test: "a staircase of largest contractions of 5, 10, 15 and 20 %, three cycles each; the staircase again; rest; again",
+    protocol: "run-in",
+};
+
+#[cfg(test)]
+mod tests {
+    use super::super::moment::tests::{base, pull, still};
+    use super::*;
+    use crate::muscle::tests::nominal;
+
+    #[test]
+    fn the_virgin_curve_is_untouched_and_the_way_back_softer() {
+        let mut memory = MullinsSoftening.start(&nominal(), &[0.03]);
+        let mut at =
+            |contraction_ratio| pull(&mut *memory, &Moment { step_s: 0.1, contraction_ratio, ..still() }, &base())[0];
+        assert!(at(0.05).abs() < 1e-12 && at(0.1).abs() < 1e-12);
+        // The bladder resists contraction; a softer one leaves more force.
+        let back_n = at(0.07);
+        assert!((back_n + base().latex_n() * (1.0 - (-1.0_f64).exp())).abs() < 1e-9);
+        assert!(back_n > 0.0 && at(-10.0) <= -base().latex_n());
+        // Up again along the softened curve, and out onto the virgin one.
+        assert!((at(0.07) - back_n).abs() < 1e-12 && at(0.12).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_gap_does_not_heal_it_and_a_new_recording_does() {
+        let mut memory = MullinsSoftening.start(&nominal(), &[0.03]);
+        let low = Moment { contraction_ratio: 0.02, ..still() };
+        pull(&mut *memory, &still(), &base());
+        assert!(pull(&mut *memory, &low, &base())[0] > 10.0);
+        let mut fresh = MullinsSoftening.start(&nominal(), &[0.03]);
+        assert!(pull(&mut *fresh, &low, &base())[0].abs() < 1e-12);
+    }
+}

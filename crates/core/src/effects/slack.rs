@@ -1,0 +1,109 @@
+//! Slack: a cable or a soft muscle cannot push, so the load cell reads a floor.
+//!
+//! ```text
+//! F_read = max(F, F_floor)
+//! ```
+
+use super::page::{Confusion, Page, Symbol};
+use super::{Effect, Kind, Memory, Role, Seen, Shape};
+use crate::muscle::Muscle;
+
+/// Lowest and highest floor, in N: what is hung on the cell, with its tare.
+const RANGE_N: (f64, f64) = (-50.0, 50.0);
+
+/// The effect.
+#[derive(Debug)]
+pub(super) struct Slack;
+
+impl Effect for Slack {
+    fn page(&self) -> &'static Page {
+        &PAGE
+    }
+
+    fn role(&self) -> Role {
+        Role::Reads
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Fixture
+    }
+
+    fn shape(&self) -> &'static [Shape] {
+        &[Shape { name: "floor_n", unit: "N", range: RANGE_N, grid: &[0.0] }]
+    }
+
+    fn first_shapes(&self, seen: &Seen) -> Vec<Vec<f64>> {
+        let lowest_n = seen.force_n.0.clamp(RANGE_N.0, RANGE_N.1);
+        if lowest_n == 0.0 { vec![vec![0.0]] } else { vec![vec![lowest_n], vec![0.0]] }
+    }
+
+    fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
+        Box::new(State { floor_n: shape[0] })
+    }
+}
+
+struct State {
+    floor_n: f64,
+}
+
+impl Memory for State {
+    fn reads(&mut self, force_n: f64) -> f64 {
+        force_n.max(self.floor_n)
+    }
+
+    fn cuts(&self, force_n: f64) -> bool {
+        force_n < self.floor_n
+    }
+}
+
+static PAGE: Page = Page {
+    id: "slack",
+    name: "slack",
+    summary: "A cable goes slack and a soft muscle buckles before either pushes, so the load cell reads its floor \
+              wherever the model has the muscle push.",
+    equation: "F = max(F_base(p, L), F_floor)",
+    symbols: &[Symbol {
+        symbol: "F_floor",
+        unit: "N",
+        meaning: "what the cell reads of a slack muscle: its tare and the weight that hangs on it; -5 to 5 N",
+    }],
+    validity: "A cable without mass and a sharp end; dead length that has to be taken up again is left out.",
+    source: "unilateral contact; Fichter (1966), NASA TN D-3510, for inflated tubes that buckle",
+    signature: "The force is flat while pressure or length move, at low pressure or large contraction, and the residual \
+                there is the negative force of the model, exactly.",
+    confused_with: &[
+        Confusion {
+            id: "threshold-pressure",
+            because: "both leave no force at low pressure",
+            test: "isometric ramps from zero at several lengths: slack ends where the model's force becomes positive, a \
+                   threshold at one pressure",
+        },
+        Confusion {
+            id: "braid-lockup",
+            because: "at large contraction and low pressure the force ends in both",
+            test: "large contraction at high pressure, where the muscle still pulls: slack does not show there",
+        },
+    ],
+    test: "vent the muscle at every length and watch for a force that stays flat; keep a preload and it is gone",
+    protocol: "isometric-ramps",
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::muscle::tests::nominal;
+
+    #[test]
+    fn it_reads_a_pull_and_no_push() {
+        let mut memory = Slack.start(&nominal(), &[-1.5]);
+        assert_eq!([memory.reads(20.0), memory.reads(-1.0), memory.reads(-30.0)], [20.0, -1.0, -1.5]);
+        assert!(memory.cuts(-30.0) && !memory.cuts(-1.0));
+    }
+
+    #[test]
+    fn a_fit_looks_at_the_lowest_force_and_at_zero() {
+        let seen =
+            Seen { contraction_ratio: (0.0, 0.2), pressure_pa: (0.0, 5e5), force_n: (-2.5, 900.0), duration_s: 60.0 };
+        assert_eq!(Slack.first_shapes(&seen), [[-2.5], [0.0]]);
+    }
+}
