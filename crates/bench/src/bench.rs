@@ -60,6 +60,14 @@ pub enum BenchError {
         /// Correlation asked for.
         value: f64,
     },
+    /// A share of colored noise that is none.
+    #[error("share of colored noise of the {channel} channel is {value}; it must be from 0, all white, to 1")]
+    ColoredShare {
+        /// Which channel.
+        channel: &'static str,
+        /// Share asked for.
+        value: f64,
+    },
     /// A recording longer than anybody wants.
     #[error("{rows:.0} rows are more than {MOST_ROWS:.0}; lower the sampling rate or shorten the protocol")]
     Rows {
@@ -110,10 +118,10 @@ impl Bench {
     /// The same with other sensors.
     ///
     /// # Errors
-    /// [`BenchError::Noise`], [`BenchError::Correlation`].
+    /// [`BenchError::Noise`], [`BenchError::Correlation`], [`BenchError::ColoredShare`].
     pub fn with_sensors(self, sensors: Sensors) -> Result<Self, BenchError> {
         let Sensors { pressure_kpa, length_mm, force_n, .. } = &sensors;
-        for (channel, Channel { noise_rms, noise_correlation, .. }) in
+        for (channel, Channel { noise_rms, noise_correlation, colored_share, .. }) in
             [("pressure", pressure_kpa), ("length", length_mm), ("force", force_n)]
         {
             if !(noise_rms.is_finite() && *noise_rms >= 0.0) {
@@ -121,6 +129,9 @@ impl Bench {
             }
             if !(0.0..1.0).contains(noise_correlation) {
                 return Err(BenchError::Correlation { channel, value: *noise_correlation });
+            }
+            if !(0.0..=1.0).contains(colored_share) {
+                return Err(BenchError::ColoredShare { channel, value: *colored_share });
             }
         }
         Ok(Self { sensors, ..self })

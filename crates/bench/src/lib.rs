@@ -30,6 +30,7 @@ pub mod mechanism;
 pub mod parameters;
 pub mod path;
 pub mod protocol;
+mod random_muscle;
 pub mod reach;
 pub mod recording;
 pub mod sensors;
