@@ -77,7 +77,7 @@ static PAGE: Page = Page {
     ],
     validity: "Delays that do not change; interpolation between samples, so no faster motion than a tenth of the \
                sampling rate.",
-    source: "time base of data loggers; Ljung (1999), \"System Identification\", section 14, for alignment before fits",
+    source: "time base of data loggers; Ljung (1999), \"System Identification\", chapter 14, for alignment before fits",
     signature: "Loops open in proportion to the rate with the force's own slope, ∂F/∂p times the rate of the pressure or \
                 ∂F/∂L times that of the length, and with either sign; a damping below zero gives it away.",
     confused_with: &[

@@ -68,7 +68,7 @@ static PAGE: Page = Page {
         meaning: "what the cell reads of a slack muscle: its tare and the weight that hangs on it; -5 to 5 N",
     }],
     validity: "A cable without mass and a sharp end; dead length that has to be taken up again is left out.",
-    source: "unilateral contact; Fichter (1966), NASA TN D-3510, for inflated tubes that buckle",
+    source: "unilateral contact; Fichter (1966), NASA TN D-3466, for inflated tubes that buckle",
     signature: "The force is flat while pressure or length move, at low pressure or large contraction, and the residual \
                 there is the negative force of the model, exactly.",
     confused_with: &[

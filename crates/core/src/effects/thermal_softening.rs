@@ -92,7 +92,7 @@ static PAGE: Page = Page {
         },
     ],
     validity: "A recording that begins cold, in surroundings of constant temperature; some kelvin, where the rubber \
-               softens in proportion.",
+               softens in proportion. Unfilled rubber may stiffen a little instead, which this leaves out.",
     source: "Doumit and Pardoel (2017) for the heat of working muscles; first-order balance of heat",
     signature: "Over minutes of cycling the force drifts upwards in proportion to the bladder's force, at every pressure \
                 alike, faster under faster motion, and comes back in rest.",

@@ -68,8 +68,8 @@ static PAGE: Page = Page {
         Symbol { symbol: "q_i", unit: "N", meaning: "what the bladder has got used to" },
     ],
     validity: "Linear viscoelasticity over two decades of time around τ; a muscle that has rested before it starts.",
-    source: "Prony series of a generalized Maxwell body (Wiechert 1893); Bennington, Rubio Ramirez and others (2023) for \
-             muscles as standard linear solids, arXiv 2301.04684",
+    source: "Prony series of a generalized Maxwell body (Wiechert 1893); Bennington and others (2023), arXiv \
+             2301.04684, for muscles as standard linear solids",
     signature: "In holds behind a step of the length the residual decays, against the step and in proportion to it, and \
                 starts anew with each step; in holds behind a step of the pressure there is nothing.",
     confused_with: &[
