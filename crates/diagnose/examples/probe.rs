@@ -49,6 +49,12 @@ fn main() {
             trial.guess.shape
         );
     }
+    println!("pooled {:.3} N", found.best.state.fit.mean_square.sqrt());
+    let residuals = setting.residuals_n(&found.best.state);
+    for range in &track.recordings {
+        let here: Vec<f64> = range.clone().filter(|&at| track.counted[at]).map(|at| residuals[at]).collect();
+        println!("   recording: mean {:.2} rms {:.2}", here.iter().sum::<f64>() / here.len() as f64, (here.iter().map(|r| r * r).sum::<f64>() / here.len() as f64).sqrt());
+    }
     println!("best {:.3} N: {:?}", found.best.held_out.mean_square().sqrt(), found.best.state.guesses);
     println!("amplitudes {:?} theta {:?}", found.best.state.fit.amplitudes, found.best.state.fit.parameters.theta);
     for (guess, taken) in found.best.state.guesses.iter().zip(&found.taken) {

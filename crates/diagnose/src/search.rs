@@ -60,8 +60,8 @@ pub struct Taken {
     pub rivals: Vec<Trial>,
 }
 
-/// Share of the mismatch that an effect must explain to be taken beside others.
-const LEAST_SHARE: f64 = 0.04;
+/// Share of what is left of the mismatch that an effect must explain to be taken.
+const LEAST_SHARE: f64 = 0.1;
 /// Share of the blocks that an effect must improve by chance alone one time in a thousand.
 const CHANCE: f64 = 1e-3;
 
@@ -94,7 +94,7 @@ pub fn search(
         for trial in &trials {
             floor_square = floor_square.min(trial.held_out.mean_square());
         }
-        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &best, &base, floor_square, limits)) else {
+        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &best, floor_square, limits)) else {
             break;
         };
         let Some(next) = settle(setting, &best, &chosen) else { break };
@@ -117,9 +117,9 @@ pub fn search(
 }
 
 /// Whether a trial gains more than chance and more than what does not matter.
-fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits: &Limits) -> bool {
+fn worth(trial: &Trial, best: &Judged, floor_square: f64, limits: &Limits) -> bool {
     let gained = best.held_out.mean_square() - trial.held_out.mean_square();
-    let mismatch = base.held_out.mean_square() - floor_square;
+    let mismatch = best.held_out.mean_square() - floor_square;
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
     gained > LEAST_SHARE * mismatch && gained > matters && chance(&best.held_out, &trial.held_out) < CHANCE

@@ -232,7 +232,7 @@ impl Remainder {
         let solve = |sum: &DMatrix<f64>| -> Option<DVector<f64>> {
             let mut left = sum.view((0, 0), (width - 1, width - 1)).into_owned();
             for index in 0..width - 1 {
-                left[(index, index)] += if index < q { 1e-9 } else { RIDGE };
+                left[(index, index)] += if index < q { 1e-6 } else { RIDGE };
             }
             let right = sum.view((0, width - 1), (width - 1, 1)).into_owned();
             Some(left.cholesky()?.solve(&right).column(0).into_owned())
