@@ -41,7 +41,7 @@ impl Wear {
 
     pub(crate) fn draw(draw: &mut Draw<'_>) -> Self {
         let stroke_m = draw.reached_contraction() * draw.muscle.muscle().rest_length_m;
-        let loss = draw.severe("loss_after_100_cycles", 0.03, 0.06, "1");
+        let loss = draw.severe("loss_after_100_cycles", 0.02, 0.04, "1");
         let exponent = draw.even("exponent", 0.45, 0.9, "1");
         Self::new(loss, exponent, stroke_m)
     }
