@@ -13,7 +13,8 @@
 //!
 //! A rest brings nothing back.
 //!
-//! Source: Durante (2021) on fatigue of pneumatic muscles, for a loss that goes on with cycles; the power law is the usual one of wear.
+//! Source: Durante (2021) on fatigue of pneumatic muscles, for a loss that goes on with cycles; the power law is
+//! the usual one of wear.
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};
