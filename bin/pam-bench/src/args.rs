@@ -24,7 +24,11 @@ use pam_virtual_bench::Concealed;
 )]
 pub(crate) struct Args {
     /// Muscle file: dimensions as measured, see configs/muscle-nominal.toml.
-    #[arg(long, value_name = "M.toml", required_unless_present_any = ["list_protocols", "list_effects", "random_muscle"])]
+    #[arg(
+        long,
+        value_name = "M.toml",
+        required_unless_present_any = ["list_protocols", "list_effects", "random_muscle"]
+    )]
     pub(crate) muscle: Option<PathBuf>,
 
     /// Draw the muscle at random instead: dimensions and parameters, from a seed of their own.
@@ -40,7 +44,11 @@ pub(crate) struct Args {
     pub(crate) protocol: Option<String>,
 
     /// Log to write, with the columns time_s, pressure_kPa, length_mm and force_N; - is standard output.
-    #[arg(long, value_name = "LOG.csv", required_unless_present_any = ["list_protocols", "list_effects", "write_muscle", "check"])]
+    #[arg(
+        long,
+        value_name = "LOG.csv",
+        required_unless_present_any = ["list_protocols", "list_effects", "write_muscle", "check"]
+    )]
     pub(crate) out: Option<PathBuf>,
 
     /// Also write what no logger sees: parameters, sensors and command, as JSON; - is standard output.

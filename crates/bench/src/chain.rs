@@ -1,9 +1,11 @@
 //! The chain from drive to logger, put together.
 //!
 //! ```text
-//! line → { contact → motion → passive tension → material → friction → resistance → tension }  → sensors → cell → channels
-//!          hung in the cable, where there is one: it seeks the length at which the forces are equal
+//! line → { contact → motion → passive tension → material → friction → resistance → tension }
+//!      → sensors → cell → channels
 //! ```
+//!
+//! What stands in braces is hung in the cable, where there is one: it seeks the length at which the forces are equal.
 
 use crate::catalogue::{Made, Stage};
 use crate::friction::BraidFriction;

@@ -27,8 +27,8 @@
 //!
 //! Valid while the muscle is a cylinder, the bladder touches the braid and `y < 1/2`.
 //!
-//! Sources: Chou and Hannaford (1996), IEEE Trans. Robotics and Automation 12(1), for the virtual work of the gas; Mooney
-//! (1940), J. Applied Physics 11, and Rivlin (1948), Phil. Trans. A 241, for the rubber.
+//! Sources: Chou and Hannaford (1996), IEEE Trans. Robotics and Automation 12(1), for the virtual work of the gas;
+//! Mooney (1940), J. Applied Physics 11, and Rivlin (1948), Phil. Trans. A 241, for the rubber.
 
 use std::f64::consts::PI;
 

@@ -16,8 +16,8 @@
 //! | `a`            | `radius_m`        | m    | radius of one contact                            |
 //! | `E`, `ν`       | `modulus_pa`, [`POISSON_RATIO`] | Pa, 1 | strand material                   |
 //!
-//! It opposes the motion of the braid, whose direction is that of [`BraidMotion`](crate::mechanism::BraidMotion): held at
-//! standstill, so that the tension jumps by `2 F_f` at a reversal.
+//! It opposes the motion of the braid, whose direction is that of [`BraidMotion`](crate::mechanism::BraidMotion):
+//! held at standstill, so that the tension jumps by `2 F_f` at a reversal.
 //!
 //! Source: Hertz (1882), "Über die Berührung fester elastischer Körper", for crossed cylinders.
 

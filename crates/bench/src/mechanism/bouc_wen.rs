@@ -13,10 +13,11 @@
 //! | `n`    | `sharpness`  | 1    | sharpness of the knee                                  |
 //! | `β`    | `1 - gamma`  | 1    | share of the softening that depends on direction       |
 //!
-//! The rubber of a bladder rubs inside itself; its loop depends on the path and not on the rate. It resists: less tension while
-//! contracting. Driven by the length alone, so that a pressure at a held length leaves it.
+//! The rubber of a bladder rubs inside itself; its loop depends on the path and not on the rate. It resists: less
+//! tension while contracting. Driven by the length alone, so that a pressure at a held length leaves it.
 //!
-//! Sources: Bouc (1967), Proc. 4th Conf. on Nonlinear Oscillations; Wen (1976), J. Engineering Mechanics Division 102(2).
+//! Sources: Bouc (1967), Proc. 4th Conf. on Nonlinear Oscillations; Wen (1976), J. Engineering Mechanics Division
+//! 102(2).
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

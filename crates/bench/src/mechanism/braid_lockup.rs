@@ -13,8 +13,8 @@
 //!
 //! Contact of strands, not of gas: it does not depend on pressure.
 //!
-//! Source: Davis and Caldwell (2006), International J. Robotics Research 25(4), for the limit that strand on strand sets to the contraction; the power is
-//! that of compacted fibers (van Wyk, 1946).
+//! Source: Davis and Caldwell (2006), International J. Robotics Research 25(4), for the limit that strand on strand
+//! sets to the contraction; the power is that of compacted fibers (van Wyk, 1946).
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

@@ -5,9 +5,9 @@
 //! Δx = L (y(p) - y(p_before))   where it is held
 //! ```
 //!
-//! Friction acts where strands slide, that is where the angle of the braid changes, `cos θ = L / b`. A shortening by `Δx`
-//! changes it, and so do strands that stretch by the share `Δy` at a fixed length, as much as a shortening by `L Δy`.
-//! The direction is the sign of `Δx`, held at standstill.
+//! Friction acts where strands slide, that is where the angle of the braid changes, `cos θ = L / b`. A shortening
+//! by `Δx` changes it, and so do strands that stretch by the share `Δy` at a fixed length, as much as a shortening
+//! by `L Δy`. The direction is the sign of `Δx`, held at standstill.
 
 use crate::mechanism::{Mechanism, Moment};
 use crate::true_muscle::TrueMuscle;

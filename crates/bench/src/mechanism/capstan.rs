@@ -11,8 +11,8 @@
 //!
 //! A slack cable rubs on nothing.
 //!
-//! Sources: Euler (1769), "Remarques sur l'effet du frottement dans l'équilibre"; Kaneko, Yamashita and Tanie (1991), Proc. ICAR, for
-//! tendons in sheaths.
+//! Sources: Euler (1769), "Remarques sur l'effet du frottement dans l'équilibre"; Kaneko, Yamashita and Tanie
+//! (1991), Proc. ICAR, for tendons in sheaths.
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

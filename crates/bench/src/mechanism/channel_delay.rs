@@ -8,7 +8,8 @@
 //! |--------|-----------|------|---------------------------------------|
 //! | `τ`    | `delay_s` | s    | transport delay of force, pressure or length |
 //!
-//! The signal is kept at the fine step and read between two of them on a straight line; before the start it stood still.
+//! The signal is kept at the fine step and read between two of them on a straight line; before the start it stood
+//! still.
 //!
 //! Source: converters on separate buses; 5 to 50 ms are usual.
 

@@ -12,8 +12,8 @@
 //!
 //! Volume that is missing does no work: the derivative is taken as a symmetric difference over the volume itself.
 //!
-//! Source: Tondu and Lopez (2000), IEEE Control Systems Magazine 20(2), and Doumit, Fahim and Munro (2009), IEEE Trans. Robotics 25(6), for conical
-//! ends.
+//! Source: Tondu and Lopez (2000), IEEE Control Systems Magazine 20(2), and Doumit, Fahim and Munro (2009), IEEE
+//! Trans. Robotics 25(6), for conical ends.
 
 use std::f64::consts::PI;
 

@@ -10,7 +10,8 @@
 //! | `r_i`  | `half_plays_pa`| Pa | half its width                         |
 //! | `w_i`  | `share`      | 1    | its share of the reading, equal for all |
 //!
-//! Depends on the path of the pressure and not on its rate; the muscle has the true pressure. Zero while the pressure is held from the start.
+//! Depends on the path of the pressure and not on its rate; the muscle has the true pressure. Zero while the
+//! pressure is held from the start.
 //!
 //! Source: Prandtl (1928) and Ishlinskii (1944), for sums of plays.
 

@@ -11,7 +11,8 @@
 //! | `ω`    | `rad_per_s` | rad/s | natural frequency of its mount                            |
 //! | `ζ`    | `DAMPING`   | 1     | its damping                                               |
 //!
-//! A drive that turns at a point would accelerate without bound; the mount gives way, so that the mass feels a short knock there.
+//! A drive that turns at a point would accelerate without bound; the mount gives way, so that the mass feels a
+//! short knock there.
 //!
 //! Source: Newton's second law.
 

@@ -12,12 +12,12 @@
 //! | `τ`    | `damping_s`       | s    | damping of the bristles over their stiffness        |
 //! | `v`    | travel over step  | m/s  | speed of the braid, positive contracting            |
 //!
-//! Bristles bend before they slide. After a reversal the friction turns within a few `δ` instead of at once; while nothing
-//! moves it stays. The rate equation is stepped exactly for constant `v`. It forgets a small loop instead of closing it, which sums
-//! of stick-slip elements do not.
+//! Bristles bend before they slide. After a reversal the friction turns within a few `δ` instead of at once; while
+//! nothing moves it stays. The rate equation is stepped exactly for constant `v`. It forgets a small loop instead
+//! of closing it, which sums of stick-slip elements do not.
 //!
-//! Source: Canudas de Wit, Olsson, Åström and Lischinsky (1995), "A new model for control of systems with friction", IEEE Trans.
-//! Automatic Control 40(3).
+//! Source: Canudas de Wit, Olsson, Åström and Lischinsky (1995), "A new model for control of systems with
+//! friction", IEEE Trans. Automatic Control 40(3).
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

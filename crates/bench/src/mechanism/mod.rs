@@ -10,8 +10,8 @@
 //! [`Readout`] changes what is read. So one trait with one function serves all of them. The order is in the
 //! `chain` module; which mechanism an effect's id stands for is in [`catalogue`](crate::catalogue).
 //!
-//! The forms are chosen to differ from those that a fit would use: a rate equation instead of a sum of elements, a spectrum
-//! instead of one time constant, a distribution instead of a smooth corner.
+//! The forms are chosen to differ from those that a fit would use: a rate equation instead of a sum of elements, a
+//! spectrum instead of one time constant, a distribution instead of a smooth corner.
 
 mod bad_spot;
 mod bouc_wen;

@@ -12,10 +12,11 @@
 //! | `m`    | `scale_j`            | J    | energy over which the softening sets in              |
 //! | `β`    | `growth`             | 1    | how that grows with `W_m`                            |
 //!
-//! The bladder is virgin at the start of a recording: on its first way up it pulls in full, on every way within what it has seen it pulls less,
-//! and no rest brings it back.
+//! The bladder is virgin at the start of a recording: on its first way up it pulls in full, on every way within
+//! what it has seen it pulls less, and no rest brings it back.
 //!
-//! Source: Ogden and Roxburgh (1999), "A pseudo-elastic model for the Mullins effect in filled rubber", Proc. Royal Society A 455.
+//! Source: Ogden and Roxburgh (1999), "A pseudo-elastic model for the Mullins effect in filled rubber", Proc. Royal
+//! Society A 455.
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

@@ -12,10 +12,11 @@
 //! | `t_0`       | `onset_s`          | s    | time after which creep is logarithmic            |
 //! | `t_∞`       | `LONGEST_S`        | s    | time after which it has ended                    |
 //!
-//! The second line turns the kernel into a ladder of times whose weights are `B e^{-t_0/τ}`. Driven by the pressure alone: a step of length
-//! leaves it.
+//! The second line turns the kernel into a ladder of times whose weights are `B e^{-t_0/τ}`. Driven by the pressure
+//! alone: a step of length leaves it.
 //!
-//! Source: Findley, Lai and Onaran (1976), "Creep and Relaxation of Nonlinear Viscoelastic Materials", for hereditary integrals.
+//! Source: Findley, Lai and Onaran (1976), "Creep and Relaxation of Nonlinear Viscoelastic Materials", for
+//! hereditary integrals.
 
 use crate::draw::Draw;
 use crate::mechanism::spectrum::Spectrum;

@@ -11,10 +11,12 @@
 //! | `R_i`   | `time_s / n`    | s    | laminar resistance times the volume of the muscle           |
 //! | `P_ref` | `REFERENCE_PA`  | Pa   | absolute pressure at which the resistance is stated         |
 //!
-//! Flow of a gas through a tube goes with the difference of the squares of absolute pressure, so that a full muscle fills and vents faster than an
-//! empty one, and inflation is faster than deflation. Each cell goes to the mean of its neighbors exponentially, which is stable at any step.
+//! Flow of a gas through a tube goes with the difference of the squares of absolute pressure, so that a full muscle
+//! fills and vents faster than an empty one, and inflation is faster than deflation. Each cell goes to the mean of
+//! its neighbors exponentially, which is stable at any step.
 //!
-//! Source: compressible laminar flow (Hagen–Poiseuille with an ideal gas) as a ladder of cells; the volume of the muscle is taken as constant.
+//! Source: compressible laminar flow (Hagen–Poiseuille with an ideal gas) as a ladder of cells; the volume of the
+//! muscle is taken as constant.
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

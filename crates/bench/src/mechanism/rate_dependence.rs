@@ -14,7 +14,8 @@
 //!
 //! Linear at small speeds, logarithmic at large ones.
 //!
-//! Source: Eyring (1936), J. Chemical Physics 4, for flow over barriers; on polymers as friction, Persson (2000), "Sliding Friction".
+//! Source: Eyring (1936), J. Chemical Physics 4, for flow over barriers; on polymers as friction, Persson (2000),
+//! "Sliding Friction".
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

@@ -11,10 +11,11 @@
 //! | `u_t`  | `toe_m`      | m    | slack between its strands                            |
 //! | `F_t`  | `toe_n`      | N    | tension over which they settle                       |
 //!
-//! The length of the muscle is where its tension and that of the cable are equal: a root of `L + u(F(L)) - L_drive`, which
-//! grows at least as fast as `L` and so is bracketed by its own value. Friction that jumps at a reversal makes the root a jump as well: there the muscle sticks
-//! while the cable takes up the change, and the tension is that of the cable. For each try the mechanisms in the cable are copied with their
-//! memory; only the step that is taken is remembered.
+//! The length of the muscle is where its tension and that of the cable are equal: a root of `L + u(F(L)) -
+//! L_drive`, which grows at least as fast as `L` and so is bracketed by its own value. Friction that jumps at a
+//! reversal makes the root a jump as well: there the muscle sticks while the cable takes up the change, and the
+//! tension is that of the cable. For each try the mechanisms in the cable are copied with their memory; only the
+//! step that is taken is remembered.
 //!
 //! Source: Fung (1967), American J. Physiology 213(6), for the exponential toe of strands that straighten.
 

@@ -12,7 +12,8 @@
 //!
 //! Shows only where a protocol lets the muscle hang slack. A severity below one leaves a share of the push.
 //!
-//! Source: unilateral contact; the small resistance is that of a buckled column, whose load hardly grows with its shortening.
+//! Source: unilateral contact; the small resistance is that of a buckled column, whose load hardly grows with its
+//! shortening.
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

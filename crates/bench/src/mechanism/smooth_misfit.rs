@@ -10,7 +10,8 @@
 //! | `P_i`  | `legendre()`| 1    | Legendre polynomials                                              |
 //! | `ω`    | `turn_rad`  | rad  | half a turn to a whole one from middle to edge                    |
 //!
-//! Coefficients are drawn, and scaled to a root mean square over the reach, so that all recordings of a muscle have the same error.
+//! Coefficients are drawn, and scaled to a root mean square over the reach, so that all recordings of a muscle have
+//! the same error.
 
 use std::f64::consts::PI;
 

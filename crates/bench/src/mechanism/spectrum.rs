@@ -12,11 +12,12 @@
 //! | `τ_i`  | `times_s`   | s           | its time                                      |
 //! | `h`    | return value|             | what still is remembered: `Σ g_i` of a step at first, then less and less |
 //!
-//! Three elements a decade follow any smooth spectrum within a percent, so that the sum behaves as the continuous spectrum of a
-//! fractional element and not as a few exponentials. Each is stepped exactly for a driver that goes straight between steps.
+//! Three elements a decade follow any smooth spectrum within a percent, so that the sum behaves as the continuous
+//! spectrum of a fractional element and not as a few exponentials. Each is stepped exactly for a driver that goes
+//! straight between steps.
 //!
-//! Source: Oustaloup, Levron, Mathieu and Nanot (2000), IEEE Trans. Circuits and Systems I 47(1), for fractional elements as ladders
-//! of poles.
+//! Source: Oustaloup, Levron, Mathieu and Nanot (2000), IEEE Trans. Circuits and Systems I 47(1), for fractional
+//! elements as ladders of poles.
 
 /// Elements for each decade of time.
 const PER_DECADE: f64 = 3.0;

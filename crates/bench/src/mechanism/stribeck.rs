@@ -14,11 +14,12 @@
 //! | `δ`    | `renewal_m` | m    | travel over which contacts are renewed              |
 //! | `t_a`  | `aging_s`   | s    | time in which contacts at rest grow                 |
 //!
-//! The level follows the speed with the travel that renews the contacts, stays while nothing moves, and begins anew from what a rest
-//! has made of it: a breakaway that grows with the rest before it.
+//! The level follows the speed with the travel that renews the contacts, stays while nothing moves, and begins anew
+//! from what a rest has made of it: a breakaway that grows with the rest before it.
 //!
-//! Sources: Stribeck (1902), Zeitschrift VDI 46; Tondu and Lopez (2000), IEEE Control Systems Magazine 20(2), for the braid;
-//! Armstrong-Hélouvry, Dupont and Canudas de Wit (1994), Automatica 30(7), for frictional memory and rising static friction.
+//! Sources: Stribeck (1902), Zeitschrift VDI 46; Tondu and Lopez (2000), IEEE Control Systems Magazine 20(2), for
+//! the braid; Armstrong-Hélouvry, Dupont and Canudas de Wit (1994), Automatica 30(7), for frictional memory and
+//! rising static friction.
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

@@ -15,7 +15,8 @@
 //!
 //! The mean over the spread is exact: nothing, then a parabola, then a shift.
 //!
-//! Source: inflation of a thin neo-Hookean tube (Green and Zerna, 1954, "Theoretical Elasticity"), with `G = 2 (C₁₀ + C₀₁)`.
+//! Source: inflation of a thin neo-Hookean tube (Green and Zerna, 1954, "Theoretical Elasticity"), with `G = 2 (C₁₀
+//! + C₀₁)`.
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

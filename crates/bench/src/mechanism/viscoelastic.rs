@@ -11,8 +11,8 @@
 //! | `α`    | `order`     | 1    | order of the fractional element                |
 //! | `τ_i`  |             | s    | 0.03 to 3000 s, three for each decade          |
 //!
-//! Relaxation of a fractional solid goes as `t^{-α}`; the ladder of times is its spectrum. Driven by the length alone: a pressure step at a
-//! held length leaves it.
+//! Relaxation of a fractional solid goes as `t^{-α}`; the ladder of times is its spectrum. Driven by the length
+//! alone: a pressure step at a held length leaves it.
 //!
 //! Source: Bagley and Torvik (1983), J. Rheology 27(3), for fractional solids.
 

@@ -12,8 +12,8 @@
 //! | `ρ`    | `extending`      | 1          | extending over contracting          |
 //! | `v`    | `-dL/dt`         | m/s        | speed of shortening                 |
 //!
-//! Source: Reynolds, Repperger, Phillips and Bandry (2003), Annals of Biomedical Engineering 31(3), where damping depends on pressure
-//! and is smaller during relaxation than during contraction.
+//! Source: Reynolds, Repperger, Phillips and Bandry (2003), Annals of Biomedical Engineering 31(3), where damping
+//! depends on pressure and is smaller during relaxation than during contraction.
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};

@@ -13,7 +13,8 @@
 //!
 //! A rest brings nothing back.
 //!
-//! Source: Durante (2021) on fatigue of pneumatic muscles, for a loss that goes on with cycles; the power law is the usual one of wear.
+//! Source: Durante (2021) on fatigue of pneumatic muscles, for a loss that goes on with cycles; the power law is
+//! the usual one of wear.
 
 use crate::draw::Draw;
 use crate::mechanism::{Mechanism, Moment};
@@ -41,7 +42,7 @@ impl Wear {
 
     pub(crate) fn draw(draw: &mut Draw<'_>) -> Self {
         let stroke_m = draw.reached_contraction() * draw.muscle.muscle().rest_length_m;
-        let loss = draw.severe("loss_after_100_cycles", 0.03, 0.06, "1");
+        let loss = draw.severe("loss_after_100_cycles", 0.02, 0.04, "1");
         let exponent = draw.even("exponent", 0.45, 0.9, "1");
         Self::new(loss, exponent, stroke_m)
     }
