@@ -8,7 +8,7 @@ use crate::config::LiftPlan;
 use crate::control::Knowledge;
 use crate::inverse::Inverse;
 use crate::lift::{Instant, Lift, Outcome};
-use crate::plant::{ArmPhysics, BladderGas, Sensor};
+use crate::plant::{ArmPhysics, BladderGas, MusclePhysics, Sensor};
 
 /// Everything that a lift needs but what is drawn.
 #[derive(Clone, Copy)]
@@ -101,10 +101,12 @@ impl Simulation<'_> {
                 plan.lower_m * lower,
                 self.mounted_length_m() + deviation.mounting_m,
             ),
-            force: force.clone(),
-            friction_scale: plan.friction_factor * deviation.friction,
-            presliding_m: plan.presliding_m,
-            bowden: plan.bowden,
+            muscle: MusclePhysics {
+                force: force.clone(),
+                friction_scale: plan.friction_factor * deviation.friction,
+                presliding_m: plan.presliding_m,
+                bowden: plan.bowden,
+            },
             damping_n_m_s: plan.damping_n_m_s,
             gas: BladderGas::new(force.muscle(), plan.dead_volume_m3),
             valve,

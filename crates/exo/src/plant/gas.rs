@@ -37,7 +37,8 @@ const CRITICAL_RATIO: f64 = 0.3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BladderGas {
     strand_square_m2: f64,
-    four_pi_turns_square: f64,
+    /// `1 / (4 π n²)`.
+    per_turns_square: f64,
     solid_m3: f64,
 }
 
@@ -50,29 +51,29 @@ impl BladderGas {
             * (2.0 * muscle.rest_radius_m - muscle.wall_thickness_m);
         Self {
             strand_square_m2: muscle.strand_length_m().powi(2),
-            four_pi_turns_square: 4.0 * PI * muscle.turns().powi(2),
+            per_turns_square: 1.0 / (4.0 * PI * muscle.turns().powi(2)),
             solid_m3: rubber_m3 - dead_volume_m3,
         }
     }
 
     /// `V`, in m³.
     pub fn volume_m3(&self, length_m: f64) -> f64 {
-        length_m * (self.strand_square_m2 - length_m * length_m) / self.four_pi_turns_square - self.solid_m3
+        length_m * (self.strand_square_m2 - length_m * length_m) * self.per_turns_square - self.solid_m3
     }
 
     /// `dV/dL`, in m²; negative: a shorter muscle is thicker.
     pub fn volume_slope_m2(&self, length_m: f64) -> f64 {
-        (self.strand_square_m2 - 3.0 * length_m * length_m) / self.four_pi_turns_square
+        (self.strand_square_m2 - 3.0 * length_m * length_m) * self.per_turns_square
     }
 
-    /// Pressure after the volume has changed, without flow, in Pa gauge.
-    pub fn after_expansion_pa(pressure_pa: f64, volume_m3: f64, change_m3: f64) -> f64 {
-        pressure_pa - POLYTROPIC * (pressure_pa + ATMOSPHERE_PA) * change_m3 / volume_m3
+    /// Pressure after the volume has grown by a share `ΔV / V`, without flow, in Pa gauge.
+    pub fn after_expansion_pa(pressure_pa: f64, share: f64) -> f64 {
+        pressure_pa - POLYTROPIC * (pressure_pa + ATMOSPHERE_PA) * share
     }
 
-    /// Rate of pressure per flow, in Pa/kg.
-    pub fn stiffness_pa_per_kg(volume_m3: f64) -> f64 {
-        POLYTROPIC * RT_J_PER_KG / volume_m3
+    /// Change of pressure per mass of air that flows in, `κ R T / V`, in Pa/kg.
+    pub fn stiffness_pa_per_kg(per_m3: f64) -> f64 {
+        POLYTROPIC * RT_J_PER_KG * per_m3
     }
 }
 
