@@ -78,19 +78,16 @@ impl BladderGas {
 }
 
 /// Flow from one gauge pressure to a lower one through an open valve, in kg/s; zero against the gradient.
+///
+/// Computed as `p_up ψ = √(p_up² - ((p_down - b p_up) / (1 - b))²)`, which divides by nothing.
 pub fn flow_kg_per_s(conductance_m3_per_s_pa: f64, upstream_pa: f64, downstream_pa: f64) -> f64 {
-    if downstream_pa >= upstream_pa {
-        return 0.0;
+    let (up_pa, down_pa) = (upstream_pa + ATMOSPHERE_PA, downstream_pa + ATMOSPHERE_PA);
+    let kg_per_s_pa = conductance_m3_per_s_pa * RHO_0_KG_PER_M3;
+    let beyond_pa = (down_pa - CRITICAL_RATIO * up_pa) * (1.0 / (1.0 - CRITICAL_RATIO));
+    if beyond_pa <= 0.0 {
+        return kg_per_s_pa * up_pa;
     }
-    let absolute_pa = upstream_pa + ATMOSPHERE_PA;
-    let ratio = (downstream_pa + ATMOSPHERE_PA) / absolute_pa;
-    let choked = conductance_m3_per_s_pa * RHO_0_KG_PER_M3 * absolute_pa;
-    if ratio <= CRITICAL_RATIO {
-        choked
-    } else {
-        let beyond = (ratio - CRITICAL_RATIO) / (1.0 - CRITICAL_RATIO);
-        choked * (1.0 - beyond * beyond).sqrt()
-    }
+    kg_per_s_pa * (up_pa * up_pa - beyond_pa * beyond_pa).max(0.0).sqrt()
 }
 
 #[cfg(test)]
@@ -120,6 +117,9 @@ mod tests {
         let choked = flow_kg_per_s(1e-9, 6e5, 0.0);
         assert!((choked - 1e-9 * RHO_0_KG_PER_M3 * (6e5 + ATMOSPHERE_PA)).abs() < 1e-15);
         assert!(flow_kg_per_s(1e-9, 6e5, 5e5) < choked);
+        // Half of what is choked at ψ = 1/2, that is at b + (1 - b) √3/2 = 0.9062.
+        let down_pa = (CRITICAL_RATIO + 0.7 * 0.75_f64.sqrt()) * (6e5 + ATMOSPHERE_PA) - ATMOSPHERE_PA;
+        assert!((flow_kg_per_s(1e-9, 6e5, down_pa) / choked - 0.5).abs() < 1e-12);
         assert!(flow_kg_per_s(1e-9, 3e5, 3e5) < 1e-18 && flow_kg_per_s(1e-9, 1e5, 3e5) < 1e-18);
     }
 }
