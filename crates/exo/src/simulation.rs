@@ -69,13 +69,18 @@ impl Simulation<'_> {
         self.plan.mounted_length_m.unwrap_or(self.model.muscle().rest_length_m)
     }
 
+    /// Muscle on the elbow, as configured.
+    pub fn lever(&self) -> Lever {
+        Lever::new(self.plan.upper_m, self.plan.lower_m, self.mounted_length_m())
+    }
+
     /// What the controller believes.
     pub fn knowledge(&self) -> Knowledge<'_> {
         let plan = self.plan;
         Knowledge {
             load: plan.load,
             forearm: plan.forearm,
-            lever: Lever::new(plan.upper_m, plan.lower_m, self.mounted_length_m()),
+            lever: self.lever(),
             gas: BladderGas::new(self.model.muscle(), plan.dead_volume_m3),
             force: self.model,
             inverse: self.inverse,
