@@ -16,8 +16,8 @@ pub enum Trouble {
     },
     /// The pressure that the controller wanted stayed at a limit for [`SATURATED_S`].
     #[error(
-        "saturated from {time_s:.2} s ({q_rad:.3} rad): the {} pressure does not do for {force_n:.1} N",
-        if *high { "highest" } else { "lowest" }
+        "saturated from {time_s:.2} s ({q_rad:.3} rad): {} the {force_n:.1} N that are wanted",
+        if *high { "the highest pressure pulls less than" } else { "even the lowest pressure pulls more than" }
     )]
     Saturated {
         /// Since when, in s.
