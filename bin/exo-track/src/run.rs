@@ -115,7 +115,7 @@ impl Outputs {
     ) -> anyhow::Result<()> {
         let mut outputs = Vec::new();
         if let Some(output) = self.track {
-            outputs.push((output, track::csv(arms).into_bytes()));
+            outputs.push((output, track::csv(arms)?));
         }
         if let Some(output) = self.metrics {
             let mut json = serde_json::to_vec_pretty(artifact)?;

@@ -57,19 +57,22 @@ pub(crate) fn trials(trials: &TrialMetrics) -> String {
     )
 }
 
-/// What each option is worth.
+/// What each option is worth, in tables of a few cases that fit a terminal.
 pub(crate) fn options(variants: &[Variant]) -> String {
-    let mut table = Table::new(["controller"].into_iter().chain(CASES));
-    for variant in variants {
-        let cells = variant.cases.map(|case| {
-            let mark = if case.troubled { " !" } else { "" };
-            format!("{:.2} / {:.2}{mark}", 1e3 * case.max_rad, 1e3 * case.rmse_rad)
-        });
-        table.row([variant.name.clone()].into_iter().chain(cells));
+    let mut text =
+        "What each option is worth: MAX / RMSE of the angle in mrad, over 5 seeds and both arms (! saturated, \
+                    slack or given up)\n"
+            .to_owned();
+    for columns in [0..5, 5..CASES.len()] {
+        let mut table = Table::new(["controller"].into_iter().chain(CASES[columns.clone()].iter().copied()));
+        for variant in variants {
+            let cells = variant.cases[columns.clone()].iter().map(|case| {
+                let mark = if case.troubled { " !" } else { "" };
+                format!("{:.2} / {:.2}{mark}", 1e3 * case.max_rad, 1e3 * case.rmse_rad)
+            });
+            table.row([variant.name.clone()].into_iter().chain(cells));
+        }
+        text += &table.to_terminal().to_string();
     }
-    format!(
-        "What each option is worth: MAX / RMSE of the angle in mrad, over 5 seeds and both arms (! saturated, slack or \
-         given up)\n{}",
-        table.to_terminal()
-    )
+    text
 }

@@ -1,7 +1,5 @@
 //! The track: every signal of a lift, as CSV.
 
-use std::fmt::Write as _;
-
 use pam_exo::lift::Instant;
 
 /// One signal of an instant.
@@ -33,39 +31,35 @@ const SIGNALS: [(&str, Signal); 21] = [
 ];
 
 /// The track of both arms as CSV; rows of an arm whose lift was given up end there.
-pub(crate) fn csv(arms: &[Vec<Instant>; 2]) -> String {
-    let mut text =
-        String::from("time_s,reference_angle_rad,reference_velocity_rad_per_s,reference_acceleration_rad_per_s2");
+pub(crate) fn csv(arms: &[Vec<Instant>; 2]) -> Result<Vec<u8>, csv::Error> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for name in ["time_s", "reference_angle_rad", "reference_velocity_rad_per_s", "reference_acceleration_rad_per_s2"] {
+        table.write_field(name)?;
+    }
     for arm in ["left", "right"] {
         for (name, _) in SIGNALS {
-            let _ = write!(text, ",{arm}_{name}");
+            table.write_field(format!("{arm}_{name}"))?;
         }
     }
-    text.push('\n');
-    let rows = arms[0].len().max(arms[1].len());
-    for row in 0..rows {
+    table.write_record(None::<&[u8]>)?;
+    for row in 0..arms[0].len().max(arms[1].len()) {
         let Some(first) = arms[0].get(row).or(arms[1].get(row)) else { break };
         let reference = first.reference;
-        let _ = write!(
-            text,
-            "{:.4},{:.9},{:.9},{:.9}",
-            first.time_s, reference.q_rad, reference.dq_rad_per_s, reference.ddq_rad_per_s2
-        );
+        table.write_field(format!("{:.4}", first.time_s))?;
+        for value in [reference.q_rad, reference.dq_rad_per_s, reference.ddq_rad_per_s2] {
+            table.write_field(format!("{value:.9}"))?;
+        }
         for arm in arms {
             for (_, signal) in SIGNALS {
-                // Nine significant digits: finer than any sensor, and the same on every machine.
-                let _ = match arm.get(row) {
-                    Some(instant) => write!(text, ",{}", tidy(signal(instant))),
-                    None => write!(text, ","),
-                };
+                table.write_field(arm.get(row).map_or(String::new(), |instant| tidy(signal(instant)).to_string()))?;
             }
         }
-        text.push('\n');
+        table.write_record(None::<&[u8]>)?;
     }
-    text
+    table.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// Nine significant digits, without an exponent where none is needed.
+/// Nine significant digits, finer than any sensor, and without an exponent where none is needed.
 fn tidy(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }

@@ -119,6 +119,30 @@ fn a_reference_out_of_reach_is_refused_with_angle_and_forces() {
 }
 
 #[test]
+fn a_muscle_mounted_too_short_or_too_long_is_refused_before_the_lift() {
+    insta::assert_snapshot!(refused(&[("# mounted_length_mm = 267.0", "mounted_length_mm = 160.0")]), @"error: lift.toml: the muscle cannot reach the reference: at 0.000 rad (0.00 s) it is slack, as a muscle of 160.0 mm pulls nothing even at 500 kPa, and the lift needs 56.7 N; mount it longer (arm.mounted_length_mm)");
+    insta::assert_snapshot!(refused(&[("# mounted_length_mm = 267.0", "mounted_length_mm = 300.0")]), @"error: lift.toml: the muscle cannot reach the reference: at 0.000 rad (0.00 s) it is 300.0 mm long, and its strands are straight at 294.6 mm; mount it shorter (arm.mounted_length_mm)");
+    insta::assert_snapshot!(refused(&[("from_rad = 0.0 ", "from_rad = -0.1 ")]), @"error: lift.toml: the muscle cannot reach the reference: at -0.100 rad (0.00 s, length 279.7 mm) the lift needs 59.4 N, and the muscle pulls 365.9 N already at 0 kPa; mount it longer (arm.mounted_length_mm) or start at a larger angle");
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_refused_before_the_lift() {
+    let folder = folder(&[]);
+    std::fs::create_dir(folder.path().join("full")).unwrap();
+    for (path, expected) in [
+        ("none/track.csv", "error: cannot write none/track.csv: folder none does not exist"),
+        ("full", "error: cannot write full: it is a folder"),
+        ("model.json", "error: cannot write model.json: it is also an input"),
+    ] {
+        let output = run(folder.path(), &["--metrics", "metrics.json", "--out", path]);
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(text.starts_with(expected) && text.lines().count() == 1, "{text}");
+        assert!(!folder.path().join("metrics.json").exists());
+    }
+}
+
+#[test]
 fn an_artifact_of_another_kind_is_refused() {
     let folder = folder(&[]);
     std::fs::write(folder.path().join("other.json"), r#"{"schema": "pam-diagnosis/1"}"#).unwrap();
@@ -131,13 +155,27 @@ fn an_artifact_of_another_kind_is_refused() {
     }
 }
 
-#[test]
-fn a_lift_that_saturates_is_rejected_with_time_and_force() {
-    let changes = [("highest_kpa = 500.0", "highest_kpa = 112.0"), ("friction_factor = 1.0", "friction_factor = 6.0")];
-    let folder = folder(&changes);
+/// What a lift is rejected for, one line for each arm and trouble; its track is there to look at.
+fn rejected(changes: &[(&str, &str)]) -> String {
+    let folder = folder(changes);
     let output = run(folder.path(), &["--out", "track.csv"]);
-    assert_eq!(output.status.code(), Some(1));
     let text = String::from_utf8(output.stderr).unwrap();
-    assert!(text.contains("rejected: left arm saturated from"), "{text}");
-    assert!(folder.path().join("track.csv").exists(), "what happened is there to look at");
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(folder.path().join("track.csv").exists());
+    text.lines().filter(|line| line.contains("rejected")).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn a_lift_that_saturates_slackens_or_diverges_is_rejected_with_time_and_reason() {
+    let all = |text: &str, parts: &[&str]| parts.iter().for_each(|part| assert!(text.contains(part), "{part}: {text}"));
+    // A stiff joint that nobody told the controller of, and little pressure.
+    let stiff = [("damping_n_m_s = 0.05", "damping_n_m_s = 20.0"), ("duration_s = 5.0", "duration_s = 1.0")];
+    let weak = [stiff[0], stiff[1], ("highest_kpa = 500.0", "highest_kpa = 105.0")];
+    all(&rejected(&weak), &["left arm saturated from 0.5", "rad): the highest pressure pulls less than the 9"]);
+    let light = [("# true_mass_kg = 6.5", "true_mass_kg = 0.3")];
+    all(&rejected(&light), &["right arm saturated from 0.0", "even the lowest pressure pulls more than the 0."]);
+    let lively = [("kp_per_s2 = 80.0", "kp_per_s2 = 600.0"), ("diverged_rad = 0.1", "diverged_rad = 1.0")];
+    all(&rejected(&lively), &["left arm slack at", "rad): the muscle would have to push"]);
+    let unstable = [("kp_per_s2 = 80.0", "kp_per_s2 = 3000.0")];
+    all(&rejected(&unstable), &["left arm given up at", "rad, more than limits.diverged_rad"]);
 }

@@ -5,9 +5,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::config::LiftConfig;
-use crate::lift::{Outcome, Trouble};
+use crate::lift::Outcome;
 use crate::metrics::{SignalErrors, TrackingErrors};
 use crate::study::{Study, quantile};
+use crate::trouble::Trouble;
 
 /// Schema name and version.
 pub const SCHEMA: &str = "exo-metrics/1";

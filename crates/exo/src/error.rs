@@ -81,7 +81,40 @@ pub enum ConfigError {
 /// Why the reference is out of the muscle's reach.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ReachError {
-    /// The muscle is too weak, or too short already.
+    /// The muscle is stretched beyond the length of its strands.
+    #[error(
+        "the muscle cannot reach the reference: at {q_rad:.3} rad ({time_s:.2} s) it is {length_mm:.1} mm long, and its \
+         strands are straight at {straight_mm:.1} mm; mount it shorter (arm.mounted_length_mm)"
+    )]
+    Overstretched {
+        /// Angle, in rad.
+        q_rad: f64,
+        /// Time from the start of the lift, in s.
+        time_s: f64,
+        /// Length of the muscle there, in mm.
+        length_mm: f64,
+        /// Length of its strands, in mm.
+        straight_mm: f64,
+    },
+    /// The muscle has shortened so far that no pressure makes it pull.
+    #[error(
+        "the muscle cannot reach the reference: at {q_rad:.3} rad ({time_s:.2} s) it is slack, as a muscle of \
+         {length_mm:.1} mm pulls nothing even at {highest_kpa:.0} kPa, and the lift needs {needed_n:.1} N; mount it \
+         longer (arm.mounted_length_mm)"
+    )]
+    Slack {
+        /// Angle, in rad.
+        q_rad: f64,
+        /// Time from the start of the lift, in s.
+        time_s: f64,
+        /// Length of the muscle there, in mm.
+        length_mm: f64,
+        /// Force needed, in N.
+        needed_n: f64,
+        /// Highest pressure, in kPa.
+        highest_kpa: f64,
+    },
+    /// The muscle is too weak.
     #[error(
         "the muscle cannot reach the reference: at {q_rad:.3} rad ({time_s:.2} s, length {length_mm:.1} mm) the lift \
          needs {needed_n:.1} N, and {highest_kpa:.0} kPa give {available_n:.1} N; lower load.mass_kg or \

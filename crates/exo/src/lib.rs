@@ -4,7 +4,7 @@
 //! upward; pressure is gauge. Nothing here prints or reads a clock; random numbers come from streams handed in.
 //!
 //! In reading order: [`arm`] (eqs 20–51), [`mod@reference`], [`inverse`], [`control`] (eqs 52–55), [`plant`],
-//! [`lift`] (one lift), [`metrics`] (eqs 56–58), [`config`], [`simulation`] (a configuration and a muscle),
+//! [`lift`] (one lift), [`trouble`] (what makes it no success), [`metrics`] (eqs 56–58), [`config`], [`simulation`] (a configuration and a muscle),
 //! [`reach`] (what can be said beforehand), [`study`] (many lifts), [`options`] (what each option is worth),
 //! [`artifact`] (`exo-metrics/1`).
 
@@ -24,4 +24,5 @@ pub mod simulation;
 pub mod study;
 #[cfg(test)]
 mod testing;
+pub mod trouble;
 pub mod uncertainty;

@@ -3,7 +3,7 @@
 //! The load is first carried by something else, a table or the wearer, and laid onto the arms during the
 //! handover, at the angle at which the lift starts; then the arms hold it for a while. Time counts from the
 //! start of the lift. Without a hold the lift begins with the load on the arms and the pressure that the
-//! controller expects to need.
+//! controller expects to need. The controller knows the course of the handover, not the weight.
 //!
 //! Each period: sensors are read, the controller computes, the valve is told after the transport delay, the
 //! plant goes on in its own steps. The two arms share the load and are coupled by nothing else, so one follows
@@ -11,10 +11,12 @@
 
 use rand_pcg::Pcg64;
 
-use crate::control::{Command, ControlSettings, Controller, Knowledge, Limited};
+use crate::arm::Elbow;
+use crate::control::{Command, ControlSettings, Controller, Knowledge};
 use crate::metrics::{ErrorSums, TrackingErrors};
 use crate::plant::{ArmPhysics, ArmPlant, Delay, Sensor};
 use crate::reference::{Quintic, ReferenceAt};
+use crate::trouble::{Trouble, TroubleWatch};
 
 /// A lift of one arm, everything but the random numbers.
 #[derive(Debug, Clone)]
@@ -78,45 +80,6 @@ pub struct Instant {
     pub command: Command,
 }
 
-/// Why a lift is no success.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum Trouble {
-    /// The muscle would have to push: its cable went slack.
-    #[error("slack at {time_s:.2} s ({q_rad:.3} rad): the muscle would have to push")]
-    Slack {
-        /// When, in s.
-        time_s: f64,
-        /// At which angle, in rad.
-        q_rad: f64,
-    },
-    /// The pressure that the controller wanted stayed at a limit for [`SATURATED_S`].
-    #[error(
-        "saturated from {time_s:.2} s ({q_rad:.3} rad): the {} pressure does not do for {force_n:.1} N",
-        if *high { "highest" } else { "lowest" }
-    )]
-    Saturated {
-        /// Since when, in s.
-        time_s: f64,
-        /// At which angle, in rad.
-        q_rad: f64,
-        /// Whether it was the upper limit.
-        high: bool,
-        /// Force that was wanted, in N.
-        force_n: f64,
-    },
-    /// The error grew beyond the limit, or became no number.
-    #[error("given up at {time_s:.2} s: the angle is off by {error_rad:.4} rad, more than limits.diverged_rad")]
-    Diverged {
-        /// When, in s.
-        time_s: f64,
-        /// Error, in rad.
-        error_rad: f64,
-    },
-}
-
-/// How long a pressure may be wanted beyond a limit, in s: noise touches a limit for single periods.
-pub const SATURATED_S: f64 = 0.1;
-
 /// How a lift went.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
@@ -163,17 +126,15 @@ impl Lift<'_> {
     pub fn run(&self, rng: &mut Pcg64, mut watch: impl FnMut(&Instant)) -> Outcome {
         let period_s = self.settings.period_s;
         let steps = (period_s / self.physics.step_s).round() as usize;
-        let before = self.periods_before();
         let start_pa = self.start_pressure_pa();
         let mut plant = ArmPlant::at_rest(self.physics, self.reference.from_rad, start_pa, self.friction_state);
         let mut line = Delay::new((self.transport_delay_s / self.physics.step_s).round() as usize, start_pa);
         let angle_rad = self.angle_sensor.read(plant.q_rad, rng);
-        let mut controller =
-            Controller::new(self.settings, self.knowledge, &self.reference, angle_rad, plant.pressure_pa);
-        let mut sums = [ErrorSums::default(); 3];
-        let mut watcher = TroubleWatch { slack: None, limited: None, saturated: None, diverged: None };
+        let mut controller = Controller::new(self.settings, self.knowledge, &self.reference, angle_rad, start_pa);
+        let mut sums = ErrorSums::default();
+        let mut troubles = TroubleWatch::default();
         let mut outside = false;
-        for period in -before..=self.periods_after() {
+        for period in -self.periods_before()..=self.periods_after() {
             let time_s = period as f64 * period_s;
             let measured_rad = self.angle_sensor.read(plant.q_rad, rng);
             let measured_pa = self.pressure_sensor.read(plant.pressure_pa, rng);
@@ -183,38 +144,31 @@ impl Lift<'_> {
             let carried = self.carried(time_s);
             let ahead = self.carried(time_s + controller.look_ahead_s());
             let command = controller.update(time_s, [carried, ahead], measured_rad, measured_pa);
-            if period >= 0 {
-                let instant = self.instant(time_s, &plant, measured_rad, measured_pa, &command);
-                let (state, reference) = (instant.state, instant.reference);
-                let error_rad = reference.q_rad - state.q_rad;
-                sums[0].add(time_s, error_rad);
-                sums[1].add(time_s, reference.dq_rad_per_s - state.dq_rad_per_s);
-                sums[2].add(time_s, reference.ddq_rad_per_s2 - state.ddq_rad_per_s2);
+            let reference = self.reference.at(time_s);
+            let error_rad = reference.q_rad - plant.q_rad;
+            // Written so that an error that is no number ends the lift, too.
+            let given_up = error_rad.is_nan() || error_rad.abs() > self.diverged_rad;
+            if period >= 0 || given_up {
+                let instant = self.instant(time_s, reference, &plant, [measured_rad, measured_pa], command);
+                sums.add(time_s, &instant.reference, &instant.state);
                 outside |= command.outside;
-                watcher.look(&instant);
+                troubles.look(&instant);
                 watch(&instant);
             }
-            let error_rad = self.reference.at(time_s).q_rad - plant.q_rad;
-            // Written so that an error that is no number ends the lift, too.
-            if error_rad.is_nan() || error_rad.abs() > self.diverged_rad {
-                watcher.diverged = Some(Trouble::Diverged { time_s, error_rad });
+            if given_up {
+                troubles.give_up(time_s, error_rad);
                 break;
             }
-            let was_slack = watcher.slack.is_some();
             for _ in 0..steps {
                 plant.advance(line.pass(command.pressure_pa), carried);
-                if plant.slack && !was_slack && period >= 0 && watcher.slack.is_none() {
-                    watcher.slack = Some(Trouble::Slack { time_s, q_rad: plant.q_rad });
+                if plant.pull.slack && period >= 0 {
+                    troubles.slacken(time_s, plant.q_rad);
                 }
             }
         }
         Outcome {
-            errors: TrackingErrors {
-                angle_rad: sums[0].finish(period_s),
-                velocity_rad_per_s: sums[1].finish(period_s),
-                acceleration_rad_per_s2: sums[2].finish(period_s),
-            },
-            troubles: [watcher.slack, watcher.saturated, watcher.diverged],
+            errors: sums.finish(period_s),
+            troubles: troubles.found(),
             outside,
             payload_kg: controller.payload_kg(),
         }
@@ -225,7 +179,7 @@ impl Lift<'_> {
         let knowledge = self.knowledge;
         let at = knowledge.lever.at_angle(self.reference.from_rad);
         let (sine, cosine) = self.reference.from_rad.sin_cos();
-        let elbow = crate::arm::Elbow::new(&knowledge.load, &knowledge.forearm);
+        let elbow = Elbow::new(&knowledge.load, &knowledge.forearm);
         let before_s = -(self.handover_s + self.hold_s);
         let force_n = (self.carried(before_s) * elbow.gravity_n_m(sine, cosine) / at.moment_arm_m).max(0.0);
         let direction = if self.settings.hysteresis_aware { 0.0 } else { 1.0 };
@@ -236,67 +190,28 @@ impl Lift<'_> {
     fn instant(
         &self,
         time_s: f64,
+        reference: ReferenceAt,
         plant: &ArmPlant<'_>,
-        measured_rad: f64,
-        measured_pa: f64,
-        command: &Command,
+        [measured_rad, measured_pa]: [f64; 2],
+        command: Command,
     ) -> Instant {
-        // l̈ = -r q̈ - r' q̇² by a difference of moment arms.
-        let step_rad = 1e-5;
-        let slope_m = (self.physics.lever.at_angle(plant.q_rad + step_rad).moment_arm_m
-            - self.physics.lever.at_angle(plant.q_rad - step_rad).moment_arm_m)
-            / (2.0 * step_rad);
+        let (q_rad, dq_rad_per_s, ddq_rad_per_s2) = (plant.q_rad, plant.dq_rad_per_s, plant.ddq_rad_per_s2);
+        let motion = self.physics.lever.motion(q_rad, dq_rad_per_s, ddq_rad_per_s2);
         Instant {
             time_s,
-            reference: self.reference.at(time_s),
-            state: ReferenceAt {
-                q_rad: plant.q_rad,
-                dq_rad_per_s: plant.dq_rad_per_s,
-                ddq_rad_per_s2: plant.ddq_rad_per_s2,
-            },
+            reference,
+            state: ReferenceAt { q_rad, dq_rad_per_s, ddq_rad_per_s2 },
             measured_rad,
             load_torque_n_m: -plant.gravity_n_m(),
             muscle_torque_n_m: plant.torque_n_m(),
-            muscle_force_n: plant.force_n,
+            muscle_force_n: plant.pull.tension_n,
             pressure_pa: plant.pressure_pa,
             measured_pa,
-            length_m: plant.length_m,
-            length_rate_m_per_s: -plant.moment_arm_m * plant.dq_rad_per_s,
-            length_acceleration_m_per_s2: -plant.moment_arm_m * plant.ddq_rad_per_s2
-                - slope_m * plant.dq_rad_per_s * plant.dq_rad_per_s,
-            friction_state: plant.friction_state(),
-            command: *command,
-        }
-    }
-}
-
-/// Notices troubles.
-#[derive(Debug)]
-struct TroubleWatch {
-    slack: Option<Trouble>,
-    /// Since when the desired pressure lies at a limit, at which angle, and whether at the upper one.
-    limited: Option<(f64, f64, bool)>,
-    saturated: Option<Trouble>,
-    diverged: Option<Trouble>,
-}
-
-impl TroubleWatch {
-    fn look(&mut self, instant: &Instant) {
-        let high = match instant.command.limited {
-            Limited::No => {
-                self.limited = None;
-                return;
-            }
-            Limited::Low => false,
-            Limited::High => true,
-        };
-        let (since_s, q_rad, _) = match self.limited {
-            Some(since) if since.2 == high => since,
-            _ => *self.limited.insert((instant.time_s, instant.state.q_rad, high)),
-        };
-        if self.saturated.is_none() && instant.time_s - since_s >= SATURATED_S - 1e-9 {
-            let force_n = instant.command.force_n;
-            self.saturated = Some(Trouble::Saturated { time_s: since_s, q_rad, high, force_n });
+            length_m: plant.muscle.length_m(),
+            length_rate_m_per_s: motion.length_rate_m_per_s,
+            length_acceleration_m_per_s2: motion.length_acceleration_m_per_s2,
+            friction_state: plant.muscle.friction_state(),
+            command,
         }
     }
 }

@@ -1,7 +1,10 @@
 //! What each option of the controller is worth: the lift with all of them, without each, and with none.
 
+use pam_core::force::{BaseParameters, ForceModel, Parameter};
+
 use crate::config::LiftPlan;
 use crate::control::{ControlSettings, LengthSource};
+use crate::plant::ValveKind;
 use crate::simulation::{Deviation, Simulation, stream};
 
 /// Seeds that a figure is taken over.
@@ -27,23 +30,72 @@ pub struct CaseErrors {
     pub troubled: bool,
 }
 
-/// What each variant is tried on.
-pub const CASES: [&str; 5] = ["as configured", "load +30 %", "load −30 %", "friction +50 %, turned", "lag ±50 %"];
+/// What each variant is tried on: other loads and wear, then other valves and muscles.
+pub const CASES: [&str; 9] = [
+    "as configured",
+    "load +30 %",
+    "load −30 %",
+    "friction +50 %, turned",
+    "lag ±50 %",
+    "on/off valve",
+    "on/off, load ±30 %",
+    "pull −10 %",
+    "rubber +30 %",
+];
 
-fn deviations(plan: &LiftPlan) -> [Vec<Deviation>; CASES.len()] {
-    let none = Deviation::none(plan);
+/// A plant that the controller was not told of.
+struct Case {
+    deviations: Vec<Deviation>,
+    valve: ValveKind,
+    force: ForceModel,
+}
+
+fn cases(simulation: &Simulation<'_>) -> [Case; CASES.len()] {
+    let none = Deviation::none(simulation.plan);
+    let load = |payload| Deviation { payload, ..none.clone() };
+    let lag = |lag| Deviation { lag, ..none.clone() };
+    let worn = Deviation { friction: 1.5, friction_state: [-1.0; 2], ..none.clone() };
+    let as_configured = |deviations: Vec<Deviation>| Case {
+        deviations,
+        valve: simulation.plan.valve.kind,
+        force: simulation.plant.clone(),
+    };
+    let on_off = |deviations| Case { valve: ValveKind::OnOff, ..as_configured(deviations) };
+    let other = |parameters: &[Parameter], factor: f64| Case {
+        force: scaled(simulation.plant, parameters, factor),
+        ..as_configured(vec![none.clone()])
+    };
     [
-        vec![none.clone()],
-        vec![Deviation { payload: 1.3, ..none.clone() }],
-        vec![Deviation { payload: 0.7, ..none.clone() }],
-        vec![Deviation { friction: 1.5, friction_state: [-1.0; 2], ..none.clone() }],
-        vec![Deviation { lag: 1.5, ..none.clone() }, Deviation { lag: 0.5, ..none }],
+        as_configured(vec![none.clone()]),
+        as_configured(vec![load(1.3)]),
+        as_configured(vec![load(0.7)]),
+        as_configured(vec![worn]),
+        as_configured(vec![lag(1.5), lag(0.5)]),
+        on_off(vec![none.clone()]),
+        on_off(vec![load(1.3), load(0.7)]),
+        other(&[Parameter::K1], 0.9),
+        other(&[Parameter::C10, Parameter::C01], 1.3),
     ]
+}
+
+/// The model with some of its parameters scaled.
+fn scaled(model: &ForceModel, parameters: &[Parameter], factor: f64) -> ForceModel {
+    let mut theta = model.parameters().theta;
+    parameters.iter().for_each(|parameter| theta[parameter.index()] *= factor);
+    ForceModel::new(model.muscle(), model.strand_modulus_pa(), model.form(), BaseParameters { theta })
 }
 
 /// Lifts with every variant of the controller; an option that the configuration leaves off has no row.
 pub fn compare_options(simulation: &Simulation<'_>, seed: u64) -> Vec<Variant> {
-    let plan = simulation.plan;
+    let cases = cases(simulation);
+    variants(simulation.plan)
+        .into_iter()
+        .map(|(name, plan)| Variant { name, cases: cases.each_ref().map(|case| errors(simulation, &plan, case, seed)) })
+        .collect()
+}
+
+/// The configuration with all options, without each, and with none.
+fn variants(plan: &LiftPlan) -> Vec<(String, LiftPlan)> {
     let full = plan.control;
     let mut plans = vec![("as configured".to_owned(), plan.clone())];
     let mut without = |name: &str, control: ControlSettings| {
@@ -64,21 +116,17 @@ pub fn compare_options(simulation: &Simulation<'_>, seed: u64) -> Vec<Variant> {
     plans.push(("computed torque alone".to_owned(), bare.clone()));
     plans.push(("computed torque alone, no hold".to_owned(), LiftPlan { handover_s: 0.0, hold_s: 0.0, ..bare }));
     plans
-        .into_iter()
-        .map(|(name, plan)| {
-            let varied = Simulation { plan: &plan, ..*simulation };
-            let cases = deviations(&plan).map(|deviations| errors(&varied, &deviations, seed));
-            Variant { name, cases }
-        })
-        .collect()
 }
 
-fn errors(simulation: &Simulation<'_>, deviations: &[Deviation], seed: u64) -> CaseErrors {
+fn errors(simulation: &Simulation<'_>, plan: &LiftPlan, case: &Case, seed: u64) -> CaseErrors {
+    let mut plan = plan.clone();
+    plan.valve.kind = case.valve;
+    let varied = Simulation { plan: &plan, ..*simulation };
     let (mut max_rad, mut squares, mut count, mut troubled) = (0.0_f64, 0.0, 0.0, false);
-    for deviation in deviations {
+    for deviation in &case.deviations {
         for offset in 0..SEEDS {
             let mut rng = stream(seed.wrapping_add(offset), 0);
-            for outcome in simulation.run(deviation, simulation.plant, &mut rng, |_, _| {}) {
+            for outcome in varied.run(deviation, &case.force, &mut rng, |_, _| {}) {
                 max_rad = max_rad.max(outcome.errors.angle_rad.max);
                 squares += outcome.errors.angle_rad.rmse.powi(2);
                 count += 1.0;

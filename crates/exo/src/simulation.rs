@@ -8,7 +8,7 @@ use crate::config::LiftPlan;
 use crate::control::Knowledge;
 use crate::inverse::Inverse;
 use crate::lift::{Instant, Lift, Outcome};
-use crate::plant::{ArmPhysics, BladderGas, Sensor};
+use crate::plant::{ArmPhysics, BladderGas, MusclePhysics, Sensor};
 
 /// Everything that a lift needs but what is drawn.
 #[derive(Clone, Copy)]
@@ -69,13 +69,18 @@ impl Simulation<'_> {
         self.plan.mounted_length_m.unwrap_or(self.model.muscle().rest_length_m)
     }
 
+    /// Muscle on the elbow, as configured.
+    pub fn lever(&self) -> Lever {
+        Lever::new(self.plan.upper_m, self.plan.lower_m, self.mounted_length_m())
+    }
+
     /// What the controller believes.
     pub fn knowledge(&self) -> Knowledge<'_> {
         let plan = self.plan;
         Knowledge {
             load: plan.load,
             forearm: plan.forearm,
-            lever: Lever::new(plan.upper_m, plan.lower_m, self.mounted_length_m()),
+            lever: self.lever(),
             gas: BladderGas::new(self.model.muscle(), plan.dead_volume_m3),
             force: self.model,
             inverse: self.inverse,
@@ -101,10 +106,12 @@ impl Simulation<'_> {
                 plan.lower_m * lower,
                 self.mounted_length_m() + deviation.mounting_m,
             ),
-            force: force.clone(),
-            friction_scale: plan.friction_factor * deviation.friction,
-            presliding_m: plan.presliding_m,
-            bowden: plan.bowden,
+            muscle: MusclePhysics {
+                force: force.clone(),
+                friction_scale: plan.friction_factor * deviation.friction,
+                presliding_m: plan.presliding_m,
+                bowden: plan.bowden,
+            },
             damping_n_m_s: plan.damping_n_m_s,
             gas: BladderGas::new(force.muscle(), plan.dead_volume_m3),
             valve,

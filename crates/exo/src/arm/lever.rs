@@ -39,6 +39,15 @@ pub struct LeverAt {
     pub moment_arm_m: f64,
 }
 
+/// How the muscle moves at one angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeverMotion {
+    /// Rate of the length, in m/s.
+    pub length_rate_m_per_s: f64,
+    /// Its acceleration, in m/s².
+    pub length_acceleration_m_per_s2: f64,
+}
+
 impl Lever {
     /// A muscle of active length `mounted_length_m` at `q = 0`.
     pub fn new(upper_m: f64, lower_m: f64, mounted_length_m: f64) -> Self {
@@ -50,6 +59,18 @@ impl Lever {
     pub fn at(&self, sine: f64, cosine: f64) -> LeverAt {
         let side_m = (self.squares_m2 - 2.0 * self.product_m2 * sine).sqrt();
         LeverAt { length_m: side_m + self.offset_m, moment_arm_m: self.product_m2 * cosine / side_m }
+    }
+
+    /// How the length follows the joint: `l̇ = -r q̇`, `l̈ = -r q̈ - r' q̇²` with `r' = (r² - a b sin q) / side`.
+    pub fn motion(&self, q_rad: f64, dq_rad_per_s: f64, ddq_rad_per_s2: f64) -> LeverMotion {
+        let (sine, cosine) = q_rad.sin_cos();
+        let at = self.at(sine, cosine);
+        let (side_m, arm_m) = (at.length_m - self.offset_m, at.moment_arm_m);
+        let slope_m = (arm_m * arm_m - self.product_m2 * sine) / side_m;
+        LeverMotion {
+            length_rate_m_per_s: -arm_m * dq_rad_per_s,
+            length_acceleration_m_per_s2: -arm_m * ddq_rad_per_s2 - slope_m * dq_rad_per_s * dq_rad_per_s,
+        }
     }
 
     /// Length and moment arm at an angle.
@@ -83,6 +104,18 @@ mod tests {
                 / (2.0 * step_rad);
             assert!((lever.at_angle(q_rad).moment_arm_m + slope_m).abs() < 1e-9, "q = {q_rad}");
         }
+    }
+
+    #[test]
+    fn the_length_moves_as_its_finite_differences() {
+        let lever = Lever::new(PAPER.0, PAPER.1, 0.25);
+        let (q, dq, ddq, step_s) = (0.2, 0.7, -1.3, 1e-4);
+        let length_m = |time_s: f64| lever.at_angle(q + dq * time_s + 0.5 * ddq * time_s * time_s).length_m;
+        let motion = lever.motion(q, dq, ddq);
+        let rate = (length_m(step_s) - length_m(-step_s)) / (2.0 * step_s);
+        let acceleration = (length_m(step_s) - 2.0 * length_m(0.0) + length_m(-step_s)) / (step_s * step_s);
+        assert!((motion.length_rate_m_per_s - rate).abs() < 1e-8);
+        assert!((motion.length_acceleration_m_per_s2 - acceleration).abs() < 1e-6);
     }
 
     #[test]

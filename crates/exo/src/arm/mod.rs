@@ -10,7 +10,7 @@ pub mod load;
 pub mod rigid_body;
 
 pub use elbow::{Elbow, Forearm};
-pub use lever::{Lever, LeverAt};
+pub use lever::{Lever, LeverAt, LeverMotion};
 pub use load::Load;
 
 /// Acceleration of gravity, in m/s²; standard value of ISO 80000-3.

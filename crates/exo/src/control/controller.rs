@@ -19,7 +19,7 @@
 use pam_core::force::ForceModel;
 
 use super::{ControlSettings, LengthSource, Observer};
-use crate::arm::{Elbow, Forearm, Lever, Load};
+use crate::arm::{Elbow, Forearm, Lever, LeverAt, Load};
 use crate::inverse::Inverse;
 use crate::plant::{ATMOSPHERE_PA, BladderGas, Dahl, POLYTROPIC};
 use crate::reference::Quintic;
@@ -180,7 +180,7 @@ impl<'a> Controller<'a> {
             self.integral_rad_s += settings.period_s * error_rad;
         }
         let desired_pa = inverted.pressure_pa.clamp(lowest_pa, highest_pa);
-        let wanted_pa = self.through_the_valve_pa(desired_pa, pressure_pa, here.length_m, now.dq_rad_per_s);
+        let wanted_pa = self.through_the_valve_pa(desired_pa, pressure_pa, here, now.dq_rad_per_s);
         Command {
             torque_n_m,
             force_n,
@@ -260,14 +260,14 @@ impl<'a> Controller<'a> {
     }
 
     /// What the valve must be told so that the pressure becomes the desired one.
-    fn through_the_valve_pa(&self, desired_pa: f64, measured_pa: f64, length_m: f64, dq_rad_per_s: f64) -> f64 {
+    fn through_the_valve_pa(&self, desired_pa: f64, measured_pa: f64, here: LeverAt, dq_rad_per_s: f64) -> f64 {
         let settings = self.settings;
         if !settings.lag_compensation {
             return desired_pa;
         }
         let gas = &self.knowledge.gas;
-        let rate_m_per_s = -self.knowledge.lever.at_angle(self.observer.q_rad).moment_arm_m * dq_rad_per_s;
-        let relative_per_s = gas.volume_slope_m2(length_m) * rate_m_per_s / gas.volume_m3(length_m);
+        let rate_m_per_s = -here.moment_arm_m * dq_rad_per_s;
+        let relative_per_s = gas.volume_slope_m2(here.length_m) * rate_m_per_s / gas.volume_m3(here.length_m);
         let expansion_pa_per_s = POLYTROPIC * (measured_pa + ATMOSPHERE_PA) * relative_per_s;
         measured_pa
             + settings.valve_lag_s * ((desired_pa - measured_pa) / settings.pressure_loop_s + expansion_pa_per_s)

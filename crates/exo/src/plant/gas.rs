@@ -37,7 +37,8 @@ const CRITICAL_RATIO: f64 = 0.3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BladderGas {
     strand_square_m2: f64,
-    four_pi_turns_square: f64,
+    /// `1 / (4 π n²)`.
+    per_turns_square: f64,
     solid_m3: f64,
 }
 
@@ -50,46 +51,43 @@ impl BladderGas {
             * (2.0 * muscle.rest_radius_m - muscle.wall_thickness_m);
         Self {
             strand_square_m2: muscle.strand_length_m().powi(2),
-            four_pi_turns_square: 4.0 * PI * muscle.turns().powi(2),
+            per_turns_square: 1.0 / (4.0 * PI * muscle.turns().powi(2)),
             solid_m3: rubber_m3 - dead_volume_m3,
         }
     }
 
     /// `V`, in m³.
     pub fn volume_m3(&self, length_m: f64) -> f64 {
-        length_m * (self.strand_square_m2 - length_m * length_m) / self.four_pi_turns_square - self.solid_m3
+        length_m * (self.strand_square_m2 - length_m * length_m) * self.per_turns_square - self.solid_m3
     }
 
     /// `dV/dL`, in m²; negative: a shorter muscle is thicker.
     pub fn volume_slope_m2(&self, length_m: f64) -> f64 {
-        (self.strand_square_m2 - 3.0 * length_m * length_m) / self.four_pi_turns_square
+        (self.strand_square_m2 - 3.0 * length_m * length_m) * self.per_turns_square
     }
 
-    /// Pressure after the volume has changed, without flow, in Pa gauge.
-    pub fn after_expansion_pa(pressure_pa: f64, volume_m3: f64, change_m3: f64) -> f64 {
-        pressure_pa - POLYTROPIC * (pressure_pa + ATMOSPHERE_PA) * change_m3 / volume_m3
+    /// Pressure after the volume has grown by a share `ΔV / V`, without flow, in Pa gauge.
+    pub fn after_expansion_pa(pressure_pa: f64, share: f64) -> f64 {
+        pressure_pa - POLYTROPIC * (pressure_pa + ATMOSPHERE_PA) * share
     }
 
-    /// Rate of pressure per flow, in Pa/kg.
-    pub fn stiffness_pa_per_kg(volume_m3: f64) -> f64 {
-        POLYTROPIC * RT_J_PER_KG / volume_m3
+    /// Change of pressure per mass of air that flows in, `κ R T / V`, in Pa/kg.
+    pub fn stiffness_pa_per_kg(per_m3: f64) -> f64 {
+        POLYTROPIC * RT_J_PER_KG * per_m3
     }
 }
 
 /// Flow from one gauge pressure to a lower one through an open valve, in kg/s; zero against the gradient.
+///
+/// Computed as `p_up ψ = √(p_up² - ((p_down - b p_up) / (1 - b))²)`, which divides by nothing.
 pub fn flow_kg_per_s(conductance_m3_per_s_pa: f64, upstream_pa: f64, downstream_pa: f64) -> f64 {
-    if downstream_pa >= upstream_pa {
-        return 0.0;
+    let (up_pa, down_pa) = (upstream_pa + ATMOSPHERE_PA, downstream_pa + ATMOSPHERE_PA);
+    let kg_per_s_pa = conductance_m3_per_s_pa * RHO_0_KG_PER_M3;
+    let beyond_pa = (down_pa - CRITICAL_RATIO * up_pa) * (1.0 / (1.0 - CRITICAL_RATIO));
+    if beyond_pa <= 0.0 {
+        return kg_per_s_pa * up_pa;
     }
-    let absolute_pa = upstream_pa + ATMOSPHERE_PA;
-    let ratio = (downstream_pa + ATMOSPHERE_PA) / absolute_pa;
-    let choked = conductance_m3_per_s_pa * RHO_0_KG_PER_M3 * absolute_pa;
-    if ratio <= CRITICAL_RATIO {
-        choked
-    } else {
-        let beyond = (ratio - CRITICAL_RATIO) / (1.0 - CRITICAL_RATIO);
-        choked * (1.0 - beyond * beyond).sqrt()
-    }
+    kg_per_s_pa * (up_pa * up_pa - beyond_pa * beyond_pa).max(0.0).sqrt()
 }
 
 #[cfg(test)]
@@ -119,6 +117,9 @@ mod tests {
         let choked = flow_kg_per_s(1e-9, 6e5, 0.0);
         assert!((choked - 1e-9 * RHO_0_KG_PER_M3 * (6e5 + ATMOSPHERE_PA)).abs() < 1e-15);
         assert!(flow_kg_per_s(1e-9, 6e5, 5e5) < choked);
+        // Half of what is choked at ψ = 1/2, that is at b + (1 - b) √3/2 = 0.9062.
+        let down_pa = (CRITICAL_RATIO + 0.7 * 0.75_f64.sqrt()) * (6e5 + ATMOSPHERE_PA) - ATMOSPHERE_PA;
+        assert!((flow_kg_per_s(1e-9, 6e5, down_pa) / choked - 0.5).abs() < 1e-12);
         assert!(flow_kg_per_s(1e-9, 3e5, 3e5) < 1e-18 && flow_kg_per_s(1e-9, 1e5, 3e5) < 1e-18);
     }
 }

@@ -23,7 +23,7 @@
 //! Source: sections 3.4 and figure 11 of Appl. Sci. 2023, 13(21), 12038 (on/off valves of at most 300 Hz);
 //! ISO 6358-1:2013 for the flow.
 
-use super::gas::{BladderGas, flow_kg_per_s};
+use super::gas::flow_kg_per_s;
 
 /// What kind of valve it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,25 +85,23 @@ impl Valve {
         }
     }
 
-    /// Pressure after one step at constant volume, in Pa gauge.
-    pub fn advance(&mut self, pressure_pa: f64, command_pa: f64, volume_m3: f64) -> f64 {
+    /// Pressure after one step, in Pa gauge, at a [stiffness](super::BladderGas::stiffness_pa_per_kg) of the air.
+    pub fn advance(&mut self, pressure_pa: f64, command_pa: f64, stiffness_pa_per_kg: f64) -> f64 {
         match self.physics.kind {
             ValveKind::Proportional => {
                 let wanted_pa = (command_pa - pressure_pa) * self.share_of_step;
-                let rate = self.step_s * BladderGas::stiffness_pa_per_kg(volume_m3);
-                let most_pa = rate * self.flow(wanted_pa > 0.0, pressure_pa);
+                let most_pa = self.step_s * stiffness_pa_per_kg * self.flow_kg_per_s(wanted_pa > 0.0, pressure_pa);
                 pressure_pa + wanted_pa.clamp(-most_pa, most_pa)
             }
-            ValveKind::OnOff => self.switch(pressure_pa, command_pa, volume_m3),
+            ValveKind::OnOff => self.switch(pressure_pa, command_pa, stiffness_pa_per_kg),
         }
     }
 
-    fn switch(&mut self, pressure_pa: f64, command_pa: f64, volume_m3: f64) -> f64 {
-        let stiffness = BladderGas::stiffness_pa_per_kg(volume_m3);
+    fn switch(&mut self, pressure_pa: f64, command_pa: f64, stiffness_pa_per_kg: f64) -> f64 {
         if self.step_in_period == 0 {
             let wanted_pa = (command_pa - pressure_pa) * self.share_of_period + self.carried_pa;
             let period_s = self.step_s * f64::from(self.steps_per_period);
-            let full_pa_per_s = stiffness * self.flow(wanted_pa > 0.0, pressure_pa);
+            let full_pa_per_s = stiffness_pa_per_kg * self.flow_kg_per_s(wanted_pa > 0.0, pressure_pa);
             let open_s = if full_pa_per_s > 0.0 { (wanted_pa.abs() / full_pa_per_s).min(period_s) } else { 0.0 };
             if open_s >= self.physics.shortest_pulse_s {
                 self.open_s = open_s.copysign(wanted_pa);
@@ -119,10 +117,10 @@ impl Valve {
         if open_s == 0.0 {
             return pressure_pa;
         }
-        pressure_pa + open_s * stiffness * self.flow(open_s > 0.0, pressure_pa)
+        pressure_pa + open_s * stiffness_pa_per_kg * self.flow_kg_per_s(open_s > 0.0, pressure_pa)
     }
 
-    fn flow(&self, filling: bool, pressure_pa: f64) -> f64 {
+    fn flow_kg_per_s(&self, filling: bool, pressure_pa: f64) -> f64 {
         let conductance = self.physics.conductance_m3_per_s_pa;
         if filling {
             flow_kg_per_s(conductance, self.physics.supply_pa, pressure_pa)
@@ -135,6 +133,7 @@ impl Valve {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plant::BladderGas;
 
     const PHYSICS: ValvePhysics = ValvePhysics {
         kind: ValveKind::Proportional,
@@ -145,12 +144,17 @@ mod tests {
         shortest_pulse_s: 2e-4,
     };
 
+    /// A tenth of a liter.
+    fn air() -> f64 {
+        BladderGas::stiffness_pa_per_kg(1e4)
+    }
+
     #[test]
     fn a_small_step_of_a_proportional_valve_is_an_exponential() {
         let mut valve = Valve::new(PHYSICS, 1e-3);
         let mut pressure_pa = 50e3;
         for step in 1..=200 {
-            pressure_pa = valve.advance(pressure_pa, 52e3, 1e-4);
+            pressure_pa = valve.advance(pressure_pa, 52e3, air());
             let expected_pa = 52e3 - 2e3 * (-f64::from(step) * 1e-3 / 0.04).exp();
             assert!((pressure_pa - expected_pa).abs() < 1e-6, "step {step}");
         }
@@ -159,8 +163,8 @@ mod tests {
     #[test]
     fn a_large_step_is_limited_by_the_flow() {
         let mut valve = Valve::new(ValvePhysics { conductance_m3_per_s_pa: 1e-10, ..PHYSICS }, 1e-3);
-        let rate = BladderGas::stiffness_pa_per_kg(1e-4) * flow_kg_per_s(1e-10, 6e5, 0.0) * 1e-3;
-        assert!((valve.advance(0.0, 5e5, 1e-4) - rate).abs() < 1e-9);
+        let rate = air() * flow_kg_per_s(1e-10, 6e5, 0.0) * 1e-3;
+        assert!((valve.advance(0.0, 5e5, air()) - rate).abs() < 1e-9);
     }
 
     #[test]
@@ -169,8 +173,8 @@ mod tests {
         let mut proportional = Valve::new(PHYSICS, 5e-4);
         let (mut pulsed_pa, mut metered_pa) = (50e3, 50e3);
         for _ in 0..600 {
-            pulsed_pa = on_off.advance(pulsed_pa, 80e3, 1e-4);
-            metered_pa = proportional.advance(metered_pa, 80e3, 1e-4);
+            pulsed_pa = on_off.advance(pulsed_pa, 80e3, air());
+            metered_pa = proportional.advance(metered_pa, 80e3, air());
             // One shortest pulse is worth 0.2 ms of about 1.7 MPa/s, and a period of lag 3.5 ms of 0.75 MPa/s.
             assert!((pulsed_pa - metered_pa).abs() < 3e3, "{pulsed_pa} {metered_pa}");
         }
@@ -183,8 +187,8 @@ mod tests {
             let mut valve = Valve::new(ValvePhysics { kind, ..PHYSICS }, 1e-3);
             let (mut high_pa, mut low_pa) = (5e5, 1e4);
             for _ in 0..2000 {
-                high_pa = valve.advance(high_pa, 9e5, 1e-4);
-                low_pa = valve.advance(low_pa, -5e4, 1e-4);
+                high_pa = valve.advance(high_pa, 9e5, air());
+                low_pa = valve.advance(low_pa, -5e4, air());
             }
             assert!(high_pa < 6.1e5, "{kind:?}: {high_pa}");
             assert!(low_pa > -2e3, "{kind:?}: {low_pa}");
