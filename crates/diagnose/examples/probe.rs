@@ -49,11 +49,40 @@ fn main() {
             trial.guess.shape
         );
     }
+    for (round, trials) in found.rounds.iter().enumerate() {
+        println!("round {round}");
+        for trial in trials.iter().take(5) {
+            println!(
+                "     {:28} {:7.2} {:7.3} p {:.1e} {:?}",
+                trial.guess.id(),
+                trial.log_ratio,
+                trial.held_out.mean_square().sqrt(),
+                chance(&found.base.held_out, &trial.held_out),
+                trial.guess.shape
+            );
+        }
+    }
+    let remainder = pam_diagnosis::structure::Remainder::of(&setting, &found.best.state);
+    for feature in &found.features {
+        let one = remainder.structure(&[feature]);
+        println!(
+            "  {:?} odd {} plane {}: {:?}",
+            feature.coordinate,
+            feature.odd,
+            feature.plane,
+            one.map(|one| one.held_out.mean_square().sqrt())
+        );
+    }
+    println!("{:?}", remainder.structure(&[]).map(|one| one.held_out.mean_square().sqrt()));
     println!("pooled {:.3} N", found.best.state.fit.mean_square.sqrt());
     let residuals = setting.residuals_n(&found.best.state);
     for range in &track.recordings {
         let here: Vec<f64> = range.clone().filter(|&at| track.counted[at]).map(|at| residuals[at]).collect();
-        println!("   recording: mean {:.2} rms {:.2}", here.iter().sum::<f64>() / here.len() as f64, (here.iter().map(|r| r * r).sum::<f64>() / here.len() as f64).sqrt());
+        println!(
+            "   recording: mean {:.2} rms {:.2}",
+            here.iter().sum::<f64>() / here.len() as f64,
+            (here.iter().map(|r| r * r).sum::<f64>() / here.len() as f64).sqrt()
+        );
     }
     println!("best {:.3} N: {:?}", found.best.held_out.mean_square().sqrt(), found.best.state.guesses);
     println!("amplitudes {:?} theta {:?}", found.best.state.fit.amplitudes, found.best.state.fit.parameters.theta);
@@ -63,6 +92,8 @@ fn main() {
             println!("    {:28} {:.2} {:.3}", rival.guess.id(), rival.log_ratio, rival.held_out.mean_square().sqrt());
         }
     }
+    let at_bound = &found.best.state.fit.at_bound;
+    println!("at bound {at_bound:?}");
     if let Some(left) = &found.left {
         println!("left unnamed: {:.3} N", left.held_out.mean_square().sqrt());
     }

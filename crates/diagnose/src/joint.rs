@@ -8,9 +8,7 @@ use pam_optim::polish::descend;
 use rayon::prelude::*;
 
 use crate::normal::Extended;
-
-/// Groups of blocks that are held out in turn.
-pub const FOLDS: usize = 8;
+use crate::track::FOLDS;
 
 /// Parameters of a joint fit.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,13 +98,15 @@ impl Joint<'_> {
     }
 
     /// Holds each fold out in turn.
-    pub fn hold_out(&self, rows: &Extended<'_>, start: &[f64]) -> Option<HeldOut> {
-        let folds: Option<Vec<JointFit>> =
-            (0..FOLDS).into_par_iter().map(|fold| self.fit(rows, start, &|block| block % FOLDS != fold)).collect();
+    pub fn hold_out(&self, rows: &Extended<'_>, start: &[f64], fold_of_block: &[usize]) -> Option<HeldOut> {
+        let folds: Option<Vec<JointFit>> = (0..FOLDS)
+            .into_par_iter()
+            .map(|fold| self.fit(rows, start, &|block| fold_of_block[block] != fold))
+            .collect();
         let folds = folds?;
         let counts = rows.counts().to_vec();
         let blocks = (0..rows.n_blocks())
-            .map(|block| rows.square_sum(block, &folds[block % FOLDS].weights) / counts[block].max(1.0))
+            .map(|block| rows.square_sum(block, &folds[fold_of_block[block]].weights) / counts[block].max(1.0))
             .collect();
         Some(HeldOut { blocks, counts })
     }

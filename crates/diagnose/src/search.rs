@@ -41,6 +41,8 @@ pub struct Found {
     pub taken: Vec<Taken>,
     /// The first look: every candidate alone.
     pub first: Vec<Trial>,
+    /// Every look, the first included.
+    pub rounds: Vec<Vec<Trial>>,
     /// Coordinates of every instant.
     pub coordinates: Coordinates,
     /// Features over them.
@@ -62,8 +64,9 @@ pub struct Taken {
 
 /// Share of what is left of the mismatch that an effect must explain to be taken.
 const LEAST_SHARE: f64 = 0.1;
-/// Share of the blocks that an effect must improve by chance alone one time in a thousand.
-const CHANCE: f64 = 1e-3;
+/// Sum of `ln(without / with)` over held-out blocks that an effect must reach: as if one block were explained and nothing
+/// lost elsewhere.
+const LEAST_LOG_RATIO: f64 = 1.0;
 
 /// Searches.
 pub fn search(
@@ -86,11 +89,13 @@ pub fn search(
     }
     let mut best = base.clone();
     let mut first = Vec::new();
+    let mut rounds = Vec::new();
     for round in 0..limits.max_effects {
         let trials = trial::all(setting, &best.state, &best.held_out, &seen, &limits.excluded);
         if round == 0 {
             first.clone_from(&trials);
         }
+        rounds.push(trials.clone());
         for trial in &trials {
             floor_square = floor_square.min(trial.held_out.mean_square());
         }
@@ -113,7 +118,7 @@ pub fn search(
     if let Some(left) = &left {
         floor_square = floor_square.min(left.held_out.mean_square());
     }
-    Some(Found { base, best, taken, first, coordinates, features, floor_square, left })
+    Some(Found { base, best, taken, first, rounds, coordinates, features, floor_square, left })
 }
 
 /// Whether a trial gains more than chance and more than what does not matter.

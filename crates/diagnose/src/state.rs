@@ -140,7 +140,7 @@ impl Setting<'_> {
     /// Mean squares of `state` over held-out blocks.
     pub fn hold_out(&self, state: &State) -> Option<HeldOut> {
         let limits = ranges(&state.guesses);
-        self.joint(&limits).hold_out(&state.normal.extend(self.track, &[], 0), &state.fit.x)
+        self.joint(&limits).hold_out(&state.normal.extend(self.track, &[], 0), &state.fit.x, &self.track.fold_of_block)
     }
 
     /// Joint fit of `state` and one more guess that only adds.
@@ -152,7 +152,11 @@ impl Setting<'_> {
     /// Mean squares over held-out blocks of `state` and one more guess that only adds.
     pub fn hold_out_more(&self, state: &State, guess: &Guess) -> Option<HeldOut> {
         let (rows, limits) = self.more(state, guess);
-        self.joint(&limits).hold_out(&state.normal.extend(self.track, &rows, guess.amplitudes().len()), &state.fit.x)
+        self.joint(&limits).hold_out(
+            &state.normal.extend(self.track, &rows, guess.amplitudes().len()),
+            &state.fit.x,
+            &self.track.fold_of_block,
+        )
     }
 
     /// Columns of one more guess, zero where slack cuts off, and the ranges of all amplitudes.

@@ -13,8 +13,9 @@ use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::ranges;
-use crate::joint::{FOLDS, HeldOut};
+use crate::joint::HeldOut;
 use crate::state::{Setting, State};
+use crate::track::FOLDS;
 
 /// Squares of the coefficients count as much as this many instants: neighbors share their noise.
 const RIDGE: f64 = 10.0;
@@ -102,7 +103,7 @@ fn quantile_knots(values: &[f64], counted: &[bool], n: usize, coordinate: Coordi
         })
         .collect();
     let span = high - low;
-    knots.dedup_by(|next, before| *next - *before < 1e-3 * span);
+    knots.dedup_by(|next, before| *next - *before <= 1e-3 * span);
     knots
 }
 
@@ -172,6 +173,7 @@ pub struct Remainder {
     rows: Vec<f64>,
     n_directions: usize,
     blocks: Vec<std::ops::Range<usize>>,
+    fold_of_block: Vec<usize>,
     counts: Vec<f64>,
     counted: Vec<bool>,
 }
@@ -213,6 +215,7 @@ impl Remainder {
             rows,
             n_directions,
             blocks: setting.track.blocks.clone(),
+            fold_of_block: setting.track.fold_of_block.clone(),
             counts: state.normal.counts().to_vec(),
             counted,
         }
@@ -242,7 +245,7 @@ impl Remainder {
             .map(|fold| {
                 let mut sum = total.clone();
                 for (block, product) in products.iter().enumerate() {
-                    if block % FOLDS == fold {
+                    if self.fold_of_block[block] == fold {
                         sum -= product;
                     }
                 }
@@ -254,9 +257,9 @@ impl Remainder {
             .iter()
             .enumerate()
             .map(|(block, product)| {
-                let mut u = folds[block % FOLDS].clone().insert_row(width - 1, -1.0);
+                let mut u = folds[self.fold_of_block[block]].clone().insert_row(width - 1, -1.0);
                 u = product.transpose() * &u;
-                let coefficients = &folds[block % FOLDS];
+                let coefficients = &folds[self.fold_of_block[block]];
                 let inner: f64 = coefficients.iter().zip(u.iter()).map(|(a, b)| a * b).sum::<f64>() - u[width - 1];
                 inner.max(0.0) / self.counts[block].max(1.0)
             })

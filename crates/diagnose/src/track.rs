@@ -18,6 +18,9 @@ const MOST_INSTANTS: usize = 300_000;
 /// Blocks that the recordings together are cut into, about.
 const BLOCKS: usize = 32;
 
+/// Groups of blocks that are held out in turn.
+pub const FOLDS: usize = 8;
+
 /// The instants of all recordings, one after the other.
 #[derive(Debug, Clone)]
 pub struct Track {
@@ -29,6 +32,8 @@ pub struct Track {
     pub blocks: Vec<Range<usize>>,
     /// Recording of each block.
     pub recording_of_block: Vec<usize>,
+    /// Fold of each block: those that are held out together.
+    pub fold_of_block: Vec<usize>,
     /// Whether an instant counts: its direction is settled and its values are finite.
     pub counted: Vec<bool>,
 }
@@ -69,6 +74,7 @@ impl Track {
             recordings: Vec::new(),
             blocks: Vec::new(),
             recording_of_block: Vec::new(),
+            fold_of_block: Vec::new(),
             counted: Vec::new(),
         };
         for (index, instants) in walked.into_iter().enumerate() {
@@ -78,6 +84,8 @@ impl Track {
             for piece in 0..pieces {
                 track.blocks.push(first + piece * rows / pieces..first + (piece + 1) * rows / pieces);
                 track.recording_of_block.push(index);
+                // Another part of each recording, so that no fold takes the same part of every protocol away.
+                track.fold_of_block.push((piece + 3 * index) % FOLDS);
             }
             track.recordings.push(first..first + rows);
             track.instants.extend(instants);
