@@ -1,6 +1,7 @@
 //! Record a protocol on a virtual bench.
 
 mod args;
+mod muscle_file;
 mod run;
 mod truth;
 

@@ -1,17 +1,21 @@
 //! From arguments to files.
 
 use std::io::Write as _;
+use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow};
 use pam_cli::{Console, Output, OutputError, Verdict, finish_all, nearest};
 use pam_core::muscle::MuscleFile;
 use pam_virtual_bench::bench::BenchError;
+use pam_virtual_bench::catalogue::EFFECTS;
+use pam_virtual_bench::concealed::ConcealedError;
 use pam_virtual_bench::parameters::ParameterError;
 use pam_virtual_bench::protocol::{ALL, ProtocolError};
 use pam_virtual_bench::sensors::Clock;
 use pam_virtual_bench::{Bench, Options, Parameters, Protocol, TrueMuscle};
 
 use crate::args::{self, Args};
+use crate::muscle_file;
 use crate::truth::Truth;
 
 pub(crate) fn run(args: &Args) -> Result<Verdict> {
@@ -20,23 +24,36 @@ pub(crate) fn run(args: &Args) -> Result<Verdict> {
         list_protocols()?;
         return Ok(Verdict::Accepted);
     }
-    let path = args.muscle.as_deref().context("--muscle is missing")?;
-    let file = MuscleFile::read(path)?;
-    let protocol = protocol_named(args.protocol.as_deref().context("--protocol is missing")?)?;
-    let bench = bench(args, file, protocol)?;
-    describe(&console, &bench);
-    if args.run.check {
+    if args.list_effects {
+        list_effects()?;
         return Ok(Verdict::Accepted);
     }
-    let mut out = Output::open(args.out.as_deref().context("--out is missing")?)?.apart_from([path])?;
-    let truth = args.truth.as_deref().map(|truth| Output::open(truth)?.apart_from([path])).transpose()?;
-    bench.record(args.run.seed).write_csv(&mut out)?;
-    let mut outputs = vec![out];
-    if let Some(mut truth) = truth {
-        let artifact = Truth::of(&bench, protocol, args, path)?;
-        serde_json::to_writer_pretty(&mut truth, &artifact)?;
-        writeln!(truth)?;
-        outputs.push(truth);
+    let muscle = muscle(args)?;
+    let inputs = args.muscle.as_deref();
+    let open = |path: &Path| -> Result<Output> { Ok(Output::open(path)?.apart_from(inputs)?) };
+    let mut outputs = Vec::new();
+    if let Some(path) = args.write_muscle.as_deref().filter(|_| !args.run.check) {
+        let mut file = open(path)?;
+        file.write_all(muscle_file::text(&muscle).as_bytes())?;
+        outputs.push(file);
+    }
+    if let Some(name) = args.protocol.as_deref() {
+        let protocol = protocol_named(name)?;
+        let bench = bench(args, muscle, protocol)?;
+        describe(&console, &bench);
+        if args.run.check {
+            return Ok(Verdict::Accepted);
+        }
+        let mut out = open(args.out.as_deref().context("--out is missing")?)?;
+        let truth = args.truth.as_deref().map(open).transpose()?;
+        bench.record(args.run.seed).write_csv(&mut out)?;
+        outputs.push(out);
+        if let Some(mut truth) = truth {
+            let artifact = Truth::of(&bench, protocol, args)?;
+            serde_json::to_writer_pretty(&mut truth, &artifact)?;
+            writeln!(truth)?;
+            outputs.push(truth);
+        }
     }
     finish_all(outputs)?;
     Ok(Verdict::Accepted)
@@ -49,6 +66,12 @@ fn list_protocols() -> Result<(), OutputError> {
     pam_cli::write_file("-", lines.concat())
 }
 
+/// The table of effects, on standard output.
+fn list_effects() -> Result<(), OutputError> {
+    let lines: Vec<String> = EFFECTS.iter().map(|effect| format!("{:<28}{}\n", effect.id, effect.summary)).collect();
+    pam_cli::write_file("-", lines.concat())
+}
+
 fn protocol_named(name: &str) -> Result<Protocol> {
     Protocol::named(name).map_err(|error| match nearest(name, ALL.map(|protocol| protocol.name)) {
         Some(nearest) => anyhow!("{error}; did you mean \"{nearest}\"?"),
@@ -56,9 +79,21 @@ fn protocol_named(name: &str) -> Result<Protocol> {
     })
 }
 
-/// Parameters of the muscle: nominal, strands as in the file, then as set.
-fn parameters(args: &Args, file: &MuscleFile) -> Result<Parameters> {
-    let mut parameters = Parameters { strand_modulus_pa: file.strand_modulus_pa, ..Parameters::nominal() };
+/// The muscle: as in the file with nominal parameters, or at random; then as set.
+fn muscle(args: &Args) -> Result<TrueMuscle> {
+    let muscle = if let Some(seed) = args.random_muscle {
+        TrueMuscle::random(seed)
+    } else {
+        let file = MuscleFile::read(args.muscle.as_deref().context("--muscle is missing")?)?;
+        let parameters = Parameters { strand_modulus_pa: file.strand_modulus_pa, ..Parameters::nominal() };
+        TrueMuscle::new(file.muscle, file.strand_modulus_pa, parameters)
+    };
+    let parameters = parameters(args, muscle.parameters().clone())?;
+    Ok(TrueMuscle::new(muscle.muscle().clone(), muscle.contact_modulus_pa(), parameters))
+}
+
+/// Parameters of the muscle, as set.
+fn parameters(args: &Args, mut parameters: Parameters) -> Result<Parameters> {
     for (name, value) in &args.set {
         parameters.set(name, *value).map_err(|error| match &error {
             ParameterError::Unknown { name } => {
@@ -74,9 +109,7 @@ fn parameters(args: &Args, file: &MuscleFile) -> Result<Parameters> {
     Ok(parameters)
 }
 
-fn bench(args: &Args, file: MuscleFile, protocol: Protocol) -> Result<Bench> {
-    let parameters = parameters(args, &file)?;
-    let muscle = TrueMuscle::new(file.muscle, file.strand_modulus_pa, parameters);
+fn bench(args: &Args, muscle: TrueMuscle, protocol: Protocol) -> Result<Bench> {
     let options = Options {
         seed: args.run.seed,
         duration_scale: args.duration_scale,
@@ -91,15 +124,33 @@ fn bench(args: &Args, file: MuscleFile, protocol: Protocol) -> Result<Bench> {
         };
         anyhow!("{option}{error}")
     })?;
-    let bench = Bench::new(muscle, command);
+    let bench = Bench::new(muscle, command)
+        .with_effects(&args.effect, args.effect_seed.unwrap_or(args.run.seed))
+        .map_err(|error| match &error {
+            ConcealedError::Unknown { id } => match nearest(id, EFFECTS.iter().map(|effect| effect.id)) {
+                Some(nearest) => anyhow!("--effect: {error}; did you mean \"{nearest}\"?"),
+                None => anyhow!("--effect: {error}; --list-effects shows all"),
+            },
+            _ => anyhow!("--effect: {error}"),
+        })?
+        .with_smooth_misfit(args.smooth_misfit_n)
+        .map_err(|error| anyhow!("--smooth-misfit-n: {error}"))?;
     let mut sensors = bench.sensors().clone().with_noise_times(args.noise);
     sensors.force_n.noise_correlation = args.force_noise_correlation;
+    sensors.force_n.colored_share = args.force_noise_colored_share;
+    if let Some(noise_rms) = args.force_noise_n {
+        sensors.force_n.noise_rms = noise_rms;
+    }
     sensors.clock = match args.clock {
         args::Clock::Ideal => Clock::Ideal,
         args::Clock::Ms => Clock::Milliseconds,
     };
     let run = bench.with_sensors(sensors).and_then(|bench| bench.at_rate(args.rate));
     run.map_err(|error| match &error {
+        BenchError::Noise { channel: "force", .. } if args.force_noise_n.is_some() => {
+            anyhow!("--force-noise-n: {error}")
+        }
+        BenchError::ColoredShare { .. } => anyhow!("--force-noise-colored-share: {error}"),
         BenchError::Noise { .. } => anyhow!("--noise {}: {error}", args.noise),
         BenchError::Correlation { .. } => anyhow!("--force-noise-correlation: {error}"),
         BenchError::Rate { .. } | BenchError::Rows { .. } => anyhow!("--rate: {error}"),

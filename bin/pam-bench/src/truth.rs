@@ -5,8 +5,9 @@ use std::path::Path;
 use anyhow::Result;
 use pam_core::artifact::{Input, InputRole, Tool, sha256_hex};
 use pam_core::muscle::Muscle;
+use pam_virtual_bench::draw::{DrawnParameter, Place};
 use pam_virtual_bench::sensors::{Channel, Clock, Sensors};
-use pam_virtual_bench::{Bench, Parameters, Protocol};
+use pam_virtual_bench::{Bench, ConcealedEffect, Parameters, Protocol};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -23,7 +24,7 @@ pub(crate) struct Truth {
     schema: &'static str,
     /// Program that wrote it.
     tool: Tool,
-    /// The muscle file.
+    /// The muscle file, if there is one.
     inputs: Vec<Input>,
     /// Options as resolved.
     config: BenchConfig,
@@ -35,6 +36,8 @@ pub(crate) struct Truth {
     strand_modulus_pa: f64,
     /// Parameters of the muscle.
     parameters: Vec<TrueParameter>,
+    /// What is concealed.
+    effects: Vec<EffectEntry>,
     /// Sensors of the rig.
     sensors: Vec<SensorEntry>,
 }
@@ -53,6 +56,12 @@ struct BenchConfig {
     highest_pressure_pa: f64,
     /// Lowest tension that the contracting muscle was taken to, in N; none where it may hang slack.
     lowest_tension_n: Option<f64>,
+    /// Seed from which the muscle was drawn; none where it comes from a file.
+    random_muscle: Option<u64>,
+    /// Seed of the inner parameters of effects and misfit.
+    effect_seed: u64,
+    /// Smooth error of the form, root mean square over all pressures and contractions of the protocols, in N.
+    smooth_misfit_n: f64,
     /// Sampling rate, in Hz.
     rate_hz: f64,
     /// Clock of the logger: `ideal` or `ms`.
@@ -71,6 +80,54 @@ struct TrueParameter {
     unit: &'static str,
 }
 
+/// A concealed effect.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct EffectEntry {
+    /// Id, as a diagnosis names it.
+    id: &'static str,
+    /// How strong; 1 is typical.
+    severity: f64,
+    /// Inner parameters as drawn, in SI.
+    parameters: Vec<TrueParameter>,
+    /// Where it shows, if it lives in a region.
+    place: Option<PlaceEntry>,
+}
+
+/// A region.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct PlaceEntry {
+    /// `time`, `pressure`, `contraction`, `speed`, `travel_since_reversal`, `time_since_last_move`, `cycle` or `force`.
+    coordinate: &'static str,
+    /// Where it begins, in SI.
+    from: f64,
+    /// Where it ends, in SI.
+    to: f64,
+    /// Unit; `1` where it has none.
+    unit: &'static str,
+}
+
+impl EffectEntry {
+    fn of(effect: &ConcealedEffect) -> Self {
+        let ConcealedEffect { id, severity, parameters, place } = effect;
+        Self {
+            id,
+            severity: *severity,
+            parameters: parameters
+                .iter()
+                .map(|DrawnParameter { name, value, unit }| TrueParameter { name, value: *value, unit })
+                .collect(),
+            place: place.as_ref().map(|Place { coordinate, from, to, unit }| PlaceEntry {
+                coordinate,
+                from: *from,
+                to: *to,
+                unit,
+            }),
+        }
+    }
+}
+
 /// One channel of the logger.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -79,8 +136,10 @@ struct SensorEntry {
     column: &'static str,
     /// Standard deviation of the noise, in the unit of the column.
     noise_rms: f64,
-    /// Share of the noise that remains after 5 ms.
+    /// Share of the colored noise that remains after 5 ms.
     noise_correlation: f64,
+    /// Share of the variance that is colored.
+    colored_share: f64,
     /// Step of the converter.
     step: f64,
     /// Lowest value that the converter can tell.
@@ -91,31 +150,38 @@ struct SensorEntry {
 
 impl SensorEntry {
     fn of(column: &'static str, channel: &Channel) -> Self {
-        let Channel { noise_rms, noise_correlation, lowest, highest, .. } = *channel;
-        Self { column, noise_rms, noise_correlation, step: channel.step(), lowest, highest }
+        let Channel { noise_rms, noise_correlation, colored_share, lowest, highest, .. } = *channel;
+        Self { column, noise_rms, noise_correlation, colored_share, step: channel.step(), lowest, highest }
     }
+}
+
+fn input(muscle_file: &Path) -> Result<Input> {
+    Ok(Input {
+        path: muscle_file.display().to_string(),
+        sha256: sha256_hex(&std::fs::read(muscle_file)?),
+        role: InputRole::Muscle,
+    })
 }
 
 impl Truth {
     /// The truth behind what `bench` records.
-    pub(crate) fn of(bench: &Bench, protocol: Protocol, args: &Args, muscle_file: &Path) -> Result<Self> {
+    pub(crate) fn of(bench: &Bench, protocol: Protocol, args: &Args) -> Result<Self> {
         let muscle = bench.muscle();
         let Sensors { pressure_kpa, length_mm, force_n, clock } = bench.sensors();
         let parameters = Parameters::NAMES.into_iter().zip(muscle.parameters().values());
         Ok(Self {
             schema: SCHEMA,
             tool: Tool { name: env!("CARGO_PKG_NAME").to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
-            inputs: vec![Input {
-                path: muscle_file.display().to_string(),
-                sha256: sha256_hex(&std::fs::read(muscle_file)?),
-                role: InputRole::Muscle,
-            }],
+            inputs: args.muscle.as_deref().map(input).transpose()?.into_iter().collect(),
             config: BenchConfig {
                 protocol: protocol.name,
                 protocol_id: protocol.id,
                 duration_scale: args.duration_scale,
                 highest_pressure_pa: args.highest_pressure * 1e3,
                 lowest_tension_n: Some(args.lowest_tension).filter(|tension| tension.is_finite()),
+                random_muscle: args.random_muscle,
+                effect_seed: bench.effect_seed(),
+                smooth_misfit_n: bench.smooth_misfit_n(),
                 rate_hz: args.rate,
                 clock: match clock {
                     Clock::Ideal => "ideal",
@@ -126,6 +192,7 @@ impl Truth {
             geometry: muscle.muscle().clone(),
             strand_modulus_pa: muscle.contact_modulus_pa(),
             parameters: parameters.map(|((name, unit), value)| TrueParameter { name, value, unit }).collect(),
+            effects: bench.effects().iter().map(EffectEntry::of).collect(),
             sensors: vec![
                 SensorEntry::of("pressure_kPa", pressure_kpa),
                 SensorEntry::of("length_mm", length_mm),

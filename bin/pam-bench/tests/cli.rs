@@ -188,3 +188,78 @@ fn help_has_an_example_that_works() {
     let help = String::from_utf8(pam_bench(&["--help"]).stdout).unwrap();
     assert!(help.contains("pam-bench --muscle configs/muscle-nominal.toml --protocol isometric-ramps"), "{help}");
 }
+
+#[test]
+fn every_effect_is_listed_with_one_line() {
+    let output = pam_bench(&["--list-effects"]);
+    assert_eq!(output.status.code(), Some(0));
+    let list = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(list.lines().count(), 24);
+    assert!(list.lines().any(|line| line.starts_with("stribeck ")));
+}
+
+#[test]
+fn a_misspelt_effect_is_refused_with_the_nearest_id() {
+    let line = error_line(&lift(&["--effect", "stribek"]));
+    assert_eq!(line, "error: --effect: there is no effect \"stribek\"; did you mean \"stribeck\"?");
+    let line = error_line(&lift(&["--effect", "gearbox"]));
+    assert_eq!(line, "error: --effect: there is no effect \"gearbox\"; --list-effects shows all");
+}
+
+#[test]
+fn concealed_effects_are_in_the_truth_and_not_in_the_columns_of_the_log() {
+    let folder = tempfile::tempdir().unwrap();
+    let truth = folder.path().join("truth.json");
+    let arguments =
+        ["--effect", "rubbing-tie:0.5", "--effect", "inertia", "--effect-seed", "9", "--smooth-misfit-n", "0.4"];
+    let output = lift(&[arguments.as_slice(), &["--truth", truth.to_str().unwrap()]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let log = String::from_utf8(output.stdout).unwrap();
+    assert!(log.starts_with("time_s,pressure_kPa,length_mm,force_N\n") && !log.contains('#'));
+    assert!(!String::from_utf8_lossy(&output.stderr).contains("rubbing"));
+    let truth: serde_json::Value = serde_json::from_slice(&std::fs::read(truth).unwrap()).unwrap();
+    let schema: serde_json::Value = serde_json::from_slice(&pam_bench(&["--schema"]).stdout).unwrap();
+    jsonschema::validate(&schema, &truth).unwrap();
+    assert_eq!(truth["config"]["effect_seed"], 9);
+    assert_eq!(truth["config"]["smooth_misfit_n"], 0.4);
+    let tie = &truth["effects"][0];
+    assert_eq!((&tie["id"], &tie["severity"]), (&"rubbing-tie".into(), &0.5.into()));
+    assert_eq!(tie["place"]["coordinate"], "contraction");
+    assert!(tie["parameters"].as_array().unwrap().len() >= 4);
+    assert_eq!(truth["effects"][1]["parameters"][0]["unit"], "kg");
+}
+
+#[test]
+fn a_random_muscle_is_written_as_a_file_that_is_read_again_as_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let muscle = folder.path().join("m.toml");
+    let muscle = muscle.to_str().unwrap();
+    let (first, second) = (folder.path().join("a.json"), folder.path().join("b.json"));
+    let record = |of: &[&str], truth: &Path| -> serde_json::Value {
+        let fixed = ["--protocol", "lift", "--out", "-", "--quiet", "--truth", truth.to_str().unwrap()];
+        let output = pam_bench(&[of, &fixed].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&std::fs::read(truth).unwrap()).unwrap()
+    };
+    let drawn = record(&["--random-muscle", "7", "--write-muscle", muscle], &first);
+    let read = record(&["--muscle", muscle], &second);
+    for (name, value) in drawn["geometry"].as_object().unwrap() {
+        let (drawn, read) = (value.as_f64().unwrap(), read["geometry"][name].as_f64().unwrap());
+        assert!((drawn / read - 1.0).abs() < 1e-9, "{name}: {drawn} {read}");
+    }
+    assert_ne!(drawn["parameters"], read["parameters"]);
+    let alone = folder.path().join("alone.toml");
+    let output = pam_bench(&["--random-muscle", "7", "--write-muscle", alone.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(std::fs::read(alone).unwrap(), std::fs::read(muscle).unwrap());
+}
+
+#[test]
+fn force_noise_may_be_half_white_and_half_colored_with_a_stated_total() {
+    let noisy = ["--force-noise-n", "0.3", "--force-noise-correlation", "0.98", "--force-noise-colored-share", "0.5"];
+    assert_eq!(lift(&noisy).status.code(), Some(0));
+    let line = error_line(&lift(&["--force-noise-n", "-1"]));
+    assert!(line.contains("--force-noise-n: noise of the force channel is -1"), "{line}");
+    let line = error_line(&lift(&["--force-noise-colored-share", "2"]));
+    assert!(line.contains("share of colored noise of the force channel is 2"), "{line}");
+}

@@ -3,7 +3,10 @@
 //! The bench simulates several steps for each row that it logs, so that a reversal falls between rows as
 //! it does on a real rig. While the logger is off it goes on with one step per row.
 
-use crate::mechanism::{Moment, base_chain};
+use crate::catalogue::{self, Effect};
+use crate::chain::assemble;
+use crate::concealed::{Concealed, ConcealedEffect, ConcealedError, draw, draw_all};
+use crate::mechanism::{Mechanism, Moment, Reading, SmoothMisfit};
 use crate::path::{Command, Knot};
 use crate::reach::REFERENCE_PRESSURE_PA;
 use crate::recording::{BenchRecording, Decimals};
@@ -27,6 +30,9 @@ pub struct Bench {
     sensors: Sensors,
     rate_hz: f64,
     oversampling: u32,
+    effects: Vec<ConcealedEffect>,
+    effect_seed: u64,
+    smooth_misfit_n: f64,
 }
 
 /// Why a run cannot be made.
@@ -54,6 +60,14 @@ pub enum BenchError {
         /// Correlation asked for.
         value: f64,
     },
+    /// A share of colored noise that is none.
+    #[error("share of colored noise of the {channel} channel is {value}; it must be from 0, all white, to 1")]
+    ColoredShare {
+        /// Which channel.
+        channel: &'static str,
+        /// Share asked for.
+        value: f64,
+    },
     /// A recording longer than anybody wants.
     #[error("{rows:.0} rows are more than {MOST_ROWS:.0}; lower the sampling rate or shorten the protocol")]
     Rows {
@@ -67,16 +81,47 @@ impl Bench {
     pub fn new(muscle: TrueMuscle, command: Command) -> Self {
         let highest_pressure_pa = command.pressure_range_pa().1.max(REFERENCE_PRESSURE_PA);
         let sensors = Sensors::suited_to(&muscle, highest_pressure_pa);
-        Self { muscle, command, sensors, rate_hz: DEFAULT_RATE_HZ, oversampling: DEFAULT_OVERSAMPLING }
+        Self {
+            muscle,
+            command,
+            sensors,
+            rate_hz: DEFAULT_RATE_HZ,
+            oversampling: DEFAULT_OVERSAMPLING,
+            effects: Vec::new(),
+            effect_seed: 0,
+            smooth_misfit_n: 0.0,
+        }
+    }
+
+    /// The same with effects that act in secret. Their inner parameters are drawn from `effect_seed` and the muscle
+    /// alone, so that recordings under different protocols that share it conceal the same.
+    ///
+    /// # Errors
+    /// [`ConcealedError`] but for its misfit.
+    pub fn with_effects(self, concealed: &[Concealed], effect_seed: u64) -> Result<Self, ConcealedError> {
+        let effects = draw_all(concealed, effect_seed, &self.muscle, &self.command)?;
+        Ok(Self { effects, effect_seed, ..self })
+    }
+
+    /// The same with a smooth static error of the form, of so many newtons root mean square over the reach of the
+    /// muscle; drawn from the seed of the effects, which is to be set before or after.
+    ///
+    /// # Errors
+    /// [`ConcealedError::Misfit`].
+    pub fn with_smooth_misfit(self, rms_n: f64) -> Result<Self, ConcealedError> {
+        if !(0.0..=1000.0).contains(&rms_n) {
+            return Err(ConcealedError::Misfit { value: rms_n });
+        }
+        Ok(Self { smooth_misfit_n: rms_n, ..self })
     }
 
     /// The same with other sensors.
     ///
     /// # Errors
-    /// [`BenchError::Noise`], [`BenchError::Correlation`].
+    /// [`BenchError::Noise`], [`BenchError::Correlation`], [`BenchError::ColoredShare`].
     pub fn with_sensors(self, sensors: Sensors) -> Result<Self, BenchError> {
         let Sensors { pressure_kpa, length_mm, force_n, .. } = &sensors;
-        for (channel, Channel { noise_rms, noise_correlation, .. }) in
+        for (channel, Channel { noise_rms, noise_correlation, colored_share, .. }) in
             [("pressure", pressure_kpa), ("length", length_mm), ("force", force_n)]
         {
             if !(noise_rms.is_finite() && *noise_rms >= 0.0) {
@@ -84,6 +129,9 @@ impl Bench {
             }
             if !(0.0..1.0).contains(noise_correlation) {
                 return Err(BenchError::Correlation { channel, value: *noise_correlation });
+            }
+            if !(0.0..=1.0).contains(colored_share) {
+                return Err(BenchError::ColoredShare { channel, value: *colored_share });
             }
         }
         Ok(Self { sensors, ..self })
@@ -110,6 +158,21 @@ impl Bench {
         Self { oversampling: oversampling.max(1), ..self }
     }
 
+    /// What is concealed, as drawn.
+    pub fn effects(&self) -> &[ConcealedEffect] {
+        &self.effects
+    }
+
+    /// Seed of what is concealed.
+    pub fn effect_seed(&self) -> u64 {
+        self.effect_seed
+    }
+
+    /// Root mean square of the smooth error of the form over the reach of the muscle, in N.
+    pub fn smooth_misfit_n(&self) -> f64 {
+        self.smooth_misfit_n
+    }
+
     /// The sensors.
     pub fn sensors(&self) -> &Sensors {
         &self.sensors
@@ -132,7 +195,7 @@ impl Bench {
 
     /// Runs the protocol and logs it. Equal benches and seeds give equal recordings.
     pub fn record(&self, seed: u64) -> BenchRecording {
-        let rows = self.simulate();
+        let rows = self.simulate(seed);
         let Sensors { pressure_kpa, length_mm, force_n, clock } = &self.sensors;
         let read = |channel: &Channel, stream: Stream, truth: fn(&Row) -> f64| {
             channel.read(rows.iter().map(truth), self.rate_hz, &mut stream.random(seed))
@@ -140,12 +203,15 @@ impl Bench {
         let in_si = |readings: Vec<f64>, units: f64| readings.into_iter().map(|value| value / units).collect();
         BenchRecording {
             time_s: rows.iter().map(|row| clock.stamp_s(row.index, self.rate_hz)).collect(),
-            pressure_pa: in_si(read(pressure_kpa, Stream::Pressure, |row| row.pressure_pa * 1e-3), 1e-3),
-            length_m: in_si(read(length_mm, Stream::Length, |row| row.length_m * 1e3), 1e3),
-            force_n: read(force_n, Stream::Force, |row| row.force_n),
+            pressure_pa: in_si(read(pressure_kpa, Stream::Pressure, |row| row.ideal.pressure_pa * 1e-3), 1e-3),
+            length_m: in_si(read(length_mm, Stream::Length, |row| row.ideal.length_m * 1e3), 1e3),
+            force_n: read(force_n, Stream::Force, |row| row.ideal.force_n),
             true_pressure_pa: rows.iter().map(|row| row.pressure_pa).collect(),
             true_length_m: rows.iter().map(|row| row.length_m).collect(),
             true_force_n: rows.iter().map(|row| row.force_n).collect(),
+            ideal_pressure_pa: rows.iter().map(|row| row.ideal.pressure_pa).collect(),
+            ideal_length_m: rows.iter().map(|row| row.ideal.length_m).collect(),
+            ideal_force_n: rows.iter().map(|row| row.ideal.force_n).collect(),
             true_direction: rows.iter().map(|row| row.direction).collect(),
             decimals: Decimals {
                 time_s: clock.decimals(self.rate_hz),
@@ -156,10 +222,25 @@ impl Bench {
         }
     }
 
+    /// The chain with what is concealed, each link as at the start.
+    fn chain(&self, seed: u64) -> Vec<Box<dyn Mechanism>> {
+        let (muscle, command) = (&self.muscle, &self.command);
+        // In the order of the catalogue, in whatever order the effects were given.
+        let made = catalogue::EFFECTS.iter().filter_map(|effect: &Effect| {
+            let concealed = self.effects.iter().find(|concealed| concealed.id == effect.id)?;
+            Some(draw(effect, concealed.severity, self.effect_seed, muscle, command).1)
+        });
+        let misfit = (self.smooth_misfit_n > 0.0)
+            .then(|| SmoothMisfit::draw(self.smooth_misfit_n, self.effect_seed, muscle, command));
+        let mut chain = assemble(made.collect(), misfit);
+        chain.iter_mut().for_each(|link| link.begin(seed));
+        chain
+    }
+
     /// The truth at every row of the log.
-    fn simulate(&self) -> Vec<Row> {
+    fn simulate(&self, seed: u64) -> Vec<Row> {
         let mut rows = Vec::with_capacity((self.command.logged_s() * self.rate_hz) as usize + self.command.takes.len());
-        let mut chain = base_chain();
+        let mut chain = self.chain(seed);
         let mut before_s = 0.0;
         let mut step = 0;
         for leg in legs(&self.command) {
@@ -195,6 +276,7 @@ struct Row {
     length_m: f64,
     force_n: f64,
     direction: f64,
+    ideal: Reading,
 }
 
 impl Row {
@@ -205,6 +287,7 @@ impl Row {
             length_m: now.drive_length_m,
             force_n: now.tension.total_n(),
             direction: now.direction,
+            ideal: now.reading,
         }
     }
 }

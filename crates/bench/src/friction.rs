@@ -16,9 +16,8 @@
 //! | `a`            | `radius_m`        | m    | radius of one contact                            |
 //! | `E`, `ν`       | `modulus_pa`, [`POISSON_RATIO`] | Pa, 1 | strand material                   |
 //!
-//! It opposes the motion of the braid: the sign is that of the shortening; where the length is held, that
-//! of the pressure's change, because strands that stretch at a fixed length open the braid as a contraction does. It is
-//! held at standstill, so that it jumps by `2 F_f` at a reversal.
+//! It opposes the motion of the braid, whose direction is that of [`BraidMotion`](crate::mechanism::BraidMotion): held at
+//! standstill, so that the tension jumps by `2 F_f` at a reversal.
 //!
 //! Source: Hertz (1882), "Über die Berührung fester elastischer Körper", for crossed cylinders.
 
@@ -72,41 +71,13 @@ impl FrictionLaw {
     }
 }
 
-/// Friction that follows the true motion, step by step.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BraidFriction {
-    direction: f64,
-    before: Option<(f64, f64)>,
-}
-
-impl BraidFriction {
-    /// The muscle comes from being inflated, which moves the braid as a contraction does.
-    pub fn new() -> Self {
-        Self { direction: 1.0, before: None }
-    }
-
-    fn follow(&mut self, now: &Moment) {
-        let (pressure_pa, length_m) = self.before.unwrap_or((now.muscle_pressure_pa, now.muscle_length_m));
-        let shortening_m = length_m - now.muscle_length_m;
-        let motion = if shortening_m == 0.0 { now.muscle_pressure_pa - pressure_pa } else { shortening_m };
-        if motion != 0.0 {
-            self.direction = motion.signum();
-        }
-        self.before = Some((now.muscle_pressure_pa, now.muscle_length_m));
-    }
-}
-
-impl Default for BraidFriction {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+/// Friction that follows the sign of the true motion, step by step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BraidFriction;
 
 impl Mechanism for BraidFriction {
     fn act(&mut self, muscle: &TrueMuscle, now: &mut Moment) {
-        self.follow(now);
-        now.direction = self.direction;
-        now.tension.friction_n += self.direction * muscle.friction_n(now.muscle_pressure_pa, now.muscle_length_m);
+        now.tension.friction_n += now.direction * muscle.friction_n(now.muscle_pressure_pa, now.muscle_length_m);
     }
 }
 
@@ -140,35 +111,10 @@ mod tests {
         assert!((ratio - 4.0_f64.powf(5.0 / 3.0)).abs() < 1e-12 * ratio);
     }
 
-    fn direction_after(positions: &[(f64, f64)]) -> f64 {
-        let muscle = TrueMuscle::nominal();
-        let mut friction = BraidFriction::new();
-        let mut direction = 0.0;
-        for &(pressure_pa, length_m) in positions {
-            let mut now = Moment::at(0.0, 1e-3, pressure_pa, length_m);
-            friction.act(&muscle, &mut now);
-            direction = now.direction;
-        }
-        direction
-    }
-
     #[test]
     fn contracting_lowers_the_tension_and_extending_raises_it() {
         let muscle = TrueMuscle::nominal();
         assert!(muscle.force_n(3e5, 0.25, 1.0) < muscle.force_n(3e5, 0.25, 0.0));
         assert!(muscle.force_n(3e5, 0.25, -1.0) > muscle.force_n(3e5, 0.25, 0.0));
-        assert_eq!(direction_after(&[(3e5, 0.26), (3e5, 0.25)]), 1.0);
-        assert_eq!(direction_after(&[(3e5, 0.25), (3e5, 0.26)]), -1.0);
-    }
-
-    #[test]
-    fn direction_is_held_at_standstill() {
-        assert_eq!(direction_after(&[(3e5, 0.25), (3e5, 0.26), (3e5, 0.26), (3e5, 0.26)]), -1.0);
-    }
-
-    #[test]
-    fn pressure_takes_the_place_of_a_length_that_is_held() {
-        assert_eq!(direction_after(&[(3e5, 0.25), (2e5, 0.25)]), -1.0);
-        assert_eq!(direction_after(&[(3e5, 0.25), (2e5, 0.25), (3e5, 0.25), (3e5, 0.25)]), 1.0);
     }
 }

@@ -12,12 +12,17 @@
 //! - [`true_muscle`]: the muscle, from stored energies; [`parameters`]: its parameters;
 //! - [`mechanism`]: what acts step by step between the drive and the load cell;
 //! - [`friction`]: friction of the braid, the first such mechanism;
+//! - [`catalogue`]: effects that can be concealed; [`concealed`]: those that are; [`draw`]: their inner parameters;
 //! - [`path`]: where the rig takes pressure and length; [`reach`]: where the muscle lets it;
 //! - [`protocol`]: the protocols by name;
 //! - [`sensors`]: noise, quantization, clock;
 //! - [`mod@bench`]: muscle, protocol and sensors together make a [`recording`].
 
 pub mod bench;
+pub mod catalogue;
+mod chain;
+pub mod concealed;
+pub mod draw;
 mod dual;
 mod energy;
 pub mod friction;
@@ -25,12 +30,14 @@ pub mod mechanism;
 pub mod parameters;
 pub mod path;
 pub mod protocol;
+mod random_muscle;
 pub mod reach;
 pub mod recording;
 pub mod sensors;
 pub mod true_muscle;
 
 pub use bench::Bench;
+pub use concealed::{Concealed, ConcealedEffect};
 pub use parameters::Parameters;
 pub use protocol::{Options, Protocol, command};
 pub use recording::BenchRecording;

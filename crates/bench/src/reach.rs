@@ -6,7 +6,7 @@
 use crate::true_muscle::TrueMuscle;
 
 /// Rest length for which speeds and strokes of the protocols are written.
-const REFERENCE_LENGTH_M: f64 = 0.267;
+pub const REFERENCE_LENGTH_M: f64 = 0.267;
 
 /// Pressure for which the protocols are written.
 pub const REFERENCE_PRESSURE_PA: f64 = 500e3;

@@ -19,6 +19,12 @@ pub struct BenchRecording {
     pub true_length_m: Vec<f64>,
     /// Tension of the muscle, in N.
     pub true_force_n: Vec<f64>,
+    /// Pressure that the gauge would log without noise and quantization, in Pa: late or wrong where an effect makes it so.
+    pub ideal_pressure_pa: Vec<f64>,
+    /// Length that would be logged without noise and quantization, in m.
+    pub ideal_length_m: Vec<f64>,
+    /// Tension that the load cell would log without noise and quantization, in N.
+    pub ideal_force_n: Vec<f64>,
     /// Direction of the braid's motion: +1 contracting, -1 extending.
     pub true_direction: Vec<f64>,
     pub(crate) decimals: Decimals,

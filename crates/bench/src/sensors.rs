@@ -17,8 +17,10 @@ pub const CORRELATION_RATE_HZ: f64 = 200.0;
 pub struct Channel {
     /// Standard deviation of the noise.
     pub noise_rms: f64,
-    /// Share of the noise that remains after one sample at 200 Hz, in [0, 1): 0 is white.
+    /// Share of the colored noise that remains after one sample at 200 Hz, in [0, 1): 0 is white.
     pub noise_correlation: f64,
+    /// Share of the noise's variance that is colored, in [0, 1]; the rest is white.
+    pub colored_share: f64,
     /// Lowest value that the converter can tell.
     pub lowest: f64,
     /// Highest value that the converter can tell.
@@ -29,7 +31,7 @@ pub struct Channel {
 
 impl Channel {
     fn white(noise_rms: f64, lowest: f64, highest: f64) -> Self {
-        Self { noise_rms, noise_correlation: 0.0, lowest, highest, bits: 16 }
+        Self { noise_rms, noise_correlation: 0.0, colored_share: 1.0, lowest, highest, bits: 16 }
     }
 
     /// Step of the converter.
@@ -54,13 +56,16 @@ impl Channel {
     pub(crate) fn read(&self, truth: impl Iterator<Item = f64>, rate_hz: f64, random: &mut impl Rng) -> Vec<f64> {
         let correlation = self.noise_correlation.powf(CORRELATION_RATE_HZ / rate_hz);
         let fresh = (1.0 - correlation * correlation).sqrt();
+        let (colored, white) = (self.colored_share.sqrt(), (1.0 - self.colored_share).sqrt());
         let mut noise: Option<f64> = None;
         truth
             .map(|value| {
                 let draw: f64 = StandardNormal.sample(random);
                 let share = noise.map_or(draw, |before| correlation * before + fresh * draw);
                 noise = Some(share);
-                self.convert(value + self.noise_rms * share)
+                // Without a white part no number is drawn for it.
+                let beside: f64 = if white > 0.0 { StandardNormal.sample(random) } else { 0.0 };
+                self.convert(value + self.noise_rms * (colored * share + white * beside))
             })
             .collect()
     }
@@ -193,6 +198,18 @@ mod tests {
             let correlation = product / noise.iter().map(|value| value * value).sum::<f64>();
             assert!((correlation - 0.8).abs() < 0.01, "{rate_hz} Hz: {correlation}");
         }
+    }
+
+    #[test]
+    fn noise_may_be_half_white_and_half_colored() {
+        let mut channel = Channel::white(0.2, -100.0, 100.0);
+        (channel.noise_correlation, channel.colored_share) = (0.98, 0.5);
+        let noise = channel.read(std::iter::repeat_n(0.0, 400_000), 200.0, &mut Stream::Force.random(7));
+        // The colored half has 4000 independent values: 2 % standard error of its variance.
+        assert!((rms(&noise) / 0.2 - 1.0).abs() < 0.03);
+        let product: f64 = noise.iter().zip(&noise[1..]).map(|(a, b)| a * b).sum();
+        let correlation = product / noise.iter().map(|value| value * value).sum::<f64>();
+        assert!((correlation - 0.5 * 0.98).abs() < 0.04, "{correlation}");
     }
 
     #[test]

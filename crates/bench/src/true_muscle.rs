@@ -11,7 +11,7 @@
 
 use pam_core::muscle::Muscle;
 
-use crate::dual::derivative;
+use crate::dual::{Dual, derivative};
 use crate::energy::Energies;
 use crate::friction::FrictionLaw;
 use crate::parameters::{NYLON_MODULUS_PA, Parameters};
@@ -29,12 +29,14 @@ pub struct Tension {
     pub strand_loss_n: f64,
     /// Lost to friction: positive where it lowers the tension, that is while contracting.
     pub friction_n: f64,
+    /// What mechanisms beside these add.
+    pub beside_n: f64,
 }
 
 impl Tension {
     /// The tension as a whole.
     pub fn total_n(&self) -> f64 {
-        self.gas_n + self.constant_n + self.bladder_n - self.strand_loss_n - self.friction_n
+        self.gas_n + self.constant_n + self.bladder_n - self.strand_loss_n - self.friction_n + self.beside_n
     }
 }
 
@@ -99,7 +101,21 @@ impl TrueMuscle {
             bladder_n: derivative(bladder, length_m),
             strand_loss_n: derivative(gas, length_m) - derivative(gas_and_strands, length_m),
             friction_n: 0.0,
+            beside_n: 0.0,
         }
+    }
+
+    /// Tension that one pascal makes in a braid of fixed strand length, in N/Pa.
+    pub fn gas_n_per_pa(&self, length_m: f64) -> f64 {
+        let Parameters { k1, k2, .. } = self.parameters;
+        let effective_m = self.muscle.length_m(k2 * self.muscle.contraction_ratio(length_m));
+        k1 * derivative(|length| self.energies.gas_j(1.0, length), effective_m)
+    }
+
+    /// Energy stored in the rubber of the bladder, in J.
+    pub fn bladder_energy_j(&self, length_m: f64) -> f64 {
+        let Parameters { c10_pa, c01_pa, .. } = self.parameters;
+        self.energies.bladder_j(c10_pa, c01_pa, Dual::constant(length_m)).value
     }
 
     /// Share by which the strands stretch; past `y = 1` there is no equilibrium, and the value is negative.
