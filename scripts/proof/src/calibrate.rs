@@ -96,7 +96,7 @@ impl Calibration<'_> {
         }
         let through_model = squares / f64::max(count, 1.0);
         let white_n = (through_model + force_n * force_n).sqrt();
-        let floor_n = if colored { (through_model + white_n * white_n).sqrt() } else { white_n };
+        let floor_n = if colored { (2.0_f64).sqrt() * white_n } else { white_n };
         Ok(Noise {
             white_factor: self.white_factor,
             colored,

@@ -54,6 +54,8 @@ pub struct Case {
     pub effect_seed: u64,
     /// Standard set of protocols.
     pub set: String,
+    /// Lowest tension that the rig takes the contracting muscle to, in N; below zero it may hang slack.
+    pub lowest_tension_n: f64,
     /// What is concealed.
     pub concealed: Vec<Concealed>,
     /// Noise, and what it leaves of a perfect model.

@@ -22,6 +22,13 @@ const MOST_REDRAWS: u32 = 40;
 /// Share of the nameless that have an effect of the catalogue beside them.
 const NAMELESS_BESIDE: f64 = 0.25;
 
+/// Share of the cases whose rig lets the muscle hang slack.
+const HANGS: f64 = 0.3;
+
+/// Lowest tension of a rig that keeps the muscle taut, and of one that does not, in N.
+const TAUT_N: f64 = 5.0;
+const SLACKEST_N: f64 = -40.0;
+
 /// Letters of names: no vowels, so that no name means anything.
 const LETTERS: &[u8] = b"bcdfghjklmnpqrstvwxz";
 
@@ -118,7 +125,8 @@ fn ids(plan: &Plan, random: &mut Pcg64Dxsm) -> Vec<&'static str> {
 /// One draw of everything else; none where it has to be drawn again.
 fn attempt(plan: &Plan, ids: &[&str], name: &str, redraws: u32, random: &mut Pcg64Dxsm) -> Result<Option<Case>> {
     let (muscle_seed, effect_seed): (u64, u64) = (random.random(), random.random());
-    let rig = Rig::random(muscle_seed);
+    let lowest_tension_n = if random.random::<f64>() < HANGS { SLACKEST_N } else { TAUT_N };
+    let rig = Rig::new(muscle_seed, lowest_tension_n);
     let set = SETS[random.random_range(0..SETS.len())];
     let Some((estimation, holdout)) = logs(&rig, &set, random) else { return Ok(None) };
     let muscle = MuscleFile::parse(&rig.muscle_file(), "muscle.toml".as_ref())?;
@@ -147,6 +155,7 @@ fn attempt(plan: &Plan, ids: &[&str], name: &str, redraws: u32, random: &mut Pcg
         muscle_seed,
         effect_seed,
         set: set.name.to_owned(),
+        lowest_tension_n,
         concealed,
         noise,
         nothing_leaves_n,

@@ -60,7 +60,7 @@ impl Recordings {
 /// Where a recording cannot be made or written.
 pub fn write(case: &Case, folder: &Path) -> Result<Recordings> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let rig = Rig::random(case.muscle_seed);
+    let rig = Rig::of(case);
     std::fs::write(folder.join(MUSCLE), rig.muscle_file())?;
     let recordings = Recordings::of(case);
     std::fs::write(folder.join(RECORDINGS), serde_json::to_vec_pretty(&recordings)?)?;
@@ -75,7 +75,7 @@ pub fn write(case: &Case, folder: &Path) -> Result<Recordings> {
 /// # Errors
 /// Where a recording cannot be made or written.
 pub fn write_noise_free(case: &Case, folder: &Path) -> Result<Vec<PathBuf>> {
-    let rig = Rig::random(case.muscle_seed);
+    let rig = Rig::of(case);
     let mut paths = Vec::new();
     for log in &case.holdout {
         let path = folder.join(format!("noise-free-{}", log.file));

@@ -1,11 +1,8 @@
 //! The bench, as the proof uses it: a random muscle, logs with what is concealed, with noise and without.
 
 use anyhow::Result;
-use pam_core::muscle::Muscle;
 use pam_core::recording::{Recording, Samples};
-use pam_virtual_bench::{Bench, BenchRecording, Options, Parameters, Protocol, Sensors, TrueMuscle};
-use rand::{RngExt as _, SeedableRng as _};
-use rand_pcg::Pcg64Dxsm;
+use pam_virtual_bench::{Bench, BenchRecording, Concealed, Options, Protocol, Sensors, TrueMuscle};
 
 use crate::case::{Case, Log, Noise, Place};
 
@@ -22,6 +19,7 @@ const GAP_S: f64 = 0.1;
 #[derive(Debug, Clone)]
 pub struct Rig {
     muscle: TrueMuscle,
+    lowest_tension_n: f64,
 }
 
 /// What acts beside the muscle.
@@ -41,29 +39,14 @@ impl Hidden<'_> {
 }
 
 impl Rig {
-    /// A muscle as one might build it.
-    pub fn random(seed: u64) -> Self {
-        let mut random = Pcg64Dxsm::seed_from_u64(seed);
-        let mut between = |low: f64, high: f64| low + random.random::<f64>() * (high - low);
-        let muscle = Muscle {
-            rest_length_m: between(0.18, 0.32),
-            rest_radius_m: between(0.007, 0.012),
-            braid_angle_rad: between(22.0, 28.0_f64).to_radians(),
-            wall_thickness_m: between(0.7e-3, 1.3e-3),
-            strand_count: between(160.0, 280.0).round(),
-            strand_diameter_m: 0.25e-3,
-        };
-        let parameters = Parameters {
-            k1: between(0.8, 1.0),
-            k2: between(1.0, 1.2),
-            k3_n: between(-3.0, 4.0),
-            c10_pa: between(90e3, 150e3),
-            c01_pa: between(80e3, 130e3),
-            rubber_friction: between(0.8e-3, 3e-3),
-            ..Parameters::nominal()
-        };
-        let modulus_pa = parameters.strand_modulus_pa;
-        Self { muscle: TrueMuscle::new(muscle, modulus_pa, parameters) }
+    /// A muscle as one might build it, taken down to a tension.
+    pub fn new(muscle_seed: u64, lowest_tension_n: f64) -> Self {
+        Self { muscle: TrueMuscle::random(muscle_seed), lowest_tension_n }
+    }
+
+    /// The rig of a case.
+    pub fn of(case: &Case) -> Self {
+        Self::new(case.muscle_seed, case.lowest_tension_n)
     }
 
     /// The muscle.
@@ -92,7 +75,7 @@ impl Rig {
     /// # Errors
     /// Where the protocol cannot be made for this muscle.
     pub fn samples(&self, protocol: &str, duration_scale: f64) -> Result<f64> {
-        let options = Options { duration_scale, ..Options::default() };
+        let options = self.options(0, duration_scale);
         Ok(Protocol::named(protocol)?.command(&self.muscle, &options)?.logged_s() * RATE_HZ)
     }
 
@@ -110,14 +93,26 @@ impl Rig {
     ///
     /// # Errors
     /// Where the bench refuses.
-    pub fn places(&self, _log: &Log, hidden: &Hidden<'_>) -> Result<Vec<Option<Place>>> {
-        Ok(vec![None; hidden.effects.len()])
+    pub fn places(&self, log: &Log, hidden: &Hidden<'_>) -> Result<Vec<Option<Place>>> {
+        let place = |place: &pam_virtual_bench::draw::Place| Place {
+            coordinate: place.coordinate.to_owned(),
+            from: place.from,
+            to: place.to,
+        };
+        Ok(self.bench(log, hidden)?.effects().iter().map(|effect| effect.place.as_ref().map(place)).collect())
     }
 
-    fn bench(&self, log: &Log, _hidden: &Hidden<'_>) -> Result<Bench> {
-        let options = Options { seed: log.seed, duration_scale: log.duration_scale, ..Options::default() };
+    fn options(&self, seed: u64, duration_scale: f64) -> Options {
+        Options { seed, duration_scale, lowest_tension_n: self.lowest_tension_n, ..Options::default() }
+    }
+
+    fn bench(&self, log: &Log, hidden: &Hidden<'_>) -> Result<Bench> {
+        let options = self.options(log.seed, log.duration_scale);
         let command = Protocol::named(&log.protocol)?.command(&self.muscle, &options)?;
-        Ok(Bench::new(self.muscle.clone(), command))
+        let concealed: Vec<Concealed> =
+            hidden.effects.iter().map(|(id, severity)| Concealed::new(id, *severity)).collect();
+        let bench = Bench::new(self.muscle.clone(), command).with_effects(&concealed, hidden.seed)?;
+        Ok(bench.with_smooth_misfit(hidden.misfit_n)?)
     }
 }
 
@@ -125,8 +120,10 @@ impl Rig {
 fn sensors(sensors: Sensors, noise: Option<&Noise>) -> Sensors {
     let mut sensors = sensors.with_noise_times(noise.map_or(0.0, |noise| noise.white_factor));
     if let Some(noise) = noise.filter(|noise| noise.colored) {
-        sensors.force_n.noise_rms = noise.colored_n;
-        sensors.force_n.noise_correlation = CORRELATION;
+        let force = &mut sensors.force_n;
+        let total_n = force.noise_rms.hypot(noise.colored_n);
+        force.colored_share = (noise.colored_n / total_n).powi(2);
+        (force.noise_rms, force.noise_correlation) = (total_n, CORRELATION);
     }
     sensors
 }
@@ -137,7 +134,7 @@ pub fn sensor_noise(rig: &Rig) -> (f64, f64, f64) {
     (1e3 * sensors.pressure_kpa.noise_rms, 1e-3 * sensors.length_mm.noise_rms, sensors.force_n.noise_rms)
 }
 
-/// The case's own rig and what is hidden in it, for `action`.
+/// Ids and severities of what is concealed in a case.
 pub fn hidden_of(case: &Case) -> Vec<(&str, f64)> {
     case.concealed.iter().map(|effect| (effect.id.as_str(), effect.severity)).collect()
 }

@@ -214,6 +214,7 @@ pub(crate) mod tests {
             muscle_seed: 1,
             effect_seed: 2,
             set: "A".to_owned(),
+            lowest_tension_n: 5.0,
             concealed,
             noise: Noise { white_factor: 1.0, colored: false, colored_n: 0.0, floor_n: 1.0, misfit_n: 0.0 },
             nothing_leaves_n: 0.0,
