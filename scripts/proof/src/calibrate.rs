@@ -87,8 +87,7 @@ impl Calibration<'_> {
             let log = self.rig.record(log, &Hidden::NOTHING, None)?;
             for row in (0..log.n_samples()).step_by(STRIDE) {
                 let (p, l, s) = (log.pressure_pa[row], log.length_m[row], log.true_direction[row]);
-                let by_pressure_n =
-                    0.5 * (model.force_n(p + pressure_pa, l, s) - model.force_n(p - pressure_pa, l, s));
+                let by_pressure_n = 0.5 * (model.force_n(p + pressure_pa, l, s) - model.force_n(p - pressure_pa, l, s));
                 let by_length_n = 0.5 * (model.force_n(p, l + length_m, s) - model.force_n(p, l - length_m, s));
                 squares += by_pressure_n * by_pressure_n + by_length_n * by_length_n;
                 count += 1.0;
@@ -111,8 +110,7 @@ impl Calibration<'_> {
     /// # Errors
     /// See [`refit`](Self::refit).
     pub fn severity(&self, id: &str, seed: u64, wanted_n: f64) -> Result<Option<(f64, f64)>> {
-        let leaves_n =
-            |severity: f64| self.leaves_n(&Hidden { effects: &[(id, severity)], seed, misfit_n: 0.0 });
+        let leaves_n = |severity: f64| self.leaves_n(&Hidden { effects: &[(id, severity)], seed, misfit_n: 0.0 });
         let (mut low, mut high): (Option<f64>, Option<f64>) = (None, None);
         let mut severity: f64 = 1.0;
         for _ in 0..MOST_FITS {

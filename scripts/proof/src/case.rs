@@ -20,13 +20,8 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind with its share of the cases.
-    pub const SHARES: [(Self, f64); 5] = [
-        (Self::Single, 0.44),
-        (Self::Nothing, 0.20),
-        (Self::Pair, 0.16),
-        (Self::Triple, 0.10),
-        (Self::Nameless, 0.10),
-    ];
+    pub const SHARES: [(Self, f64); 5] =
+        [(Self::Single, 0.44), (Self::Nothing, 0.20), (Self::Pair, 0.16), (Self::Triple, 0.10), (Self::Nameless, 0.10)];
 
     /// Name as in files.
     pub fn name(self) -> &'static str {

@@ -71,16 +71,24 @@ impl Confusion {
         let most = |counts: &[usize]| counts.iter().sum::<usize>().max(1) as f64;
         let cells = || self.counts.iter().rev().flat_map(|counts| counts.iter().map(move |count| (count, counts)));
         let map = Map {
-            columns: Bins::Named("named first (numbers as on the left; 23 consistent, 24 no name, 25 failed)".to_owned(), numbers),
+            columns: Bins::Named(
+                "named first (numbers as on the left; 23 consistent, 24 no name, 25 failed)".to_owned(),
+                numbers,
+            ),
             rows: Bins::Named("concealed".to_owned(), names),
             values: cells().map(|(count, counts)| (*count > 0).then(|| *count as f64 / most(counts))).collect(),
             texts: cells().map(|(count, _)| if *count > 0 { count.to_string() } else { String::new() }).collect(),
             bar: ColorBar { title: "share of the row".to_owned(), from: 0.0, to: 1.0, color: plot::sequential },
         };
         let (width, height) = (CELL * n_columns as f64 + 330.0, CELL * n_rows as f64 + 110.0);
-        Canvas::document(width as u32, height as u32, "what was concealed, and what was named first", |canvas, sheet| {
-            map.draw(canvas, Rect { left: sheet.left + 130.0, ..sheet });
-        })
+        Canvas::document(
+            width as u32,
+            height as u32,
+            "what was concealed, and what was named first",
+            |canvas, sheet| {
+                map.draw(canvas, Rect { left: sheet.left + 130.0, ..sheet });
+            },
+        )
     }
 }
 

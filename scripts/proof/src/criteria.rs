@@ -95,7 +95,8 @@ fn share(asks: &str, target: Option<f64>, hits: &[(&Score, bool)]) -> Criterion 
 
 fn held_out(at: f64, target: f64, ratios: &[(&Score, f64)]) -> Criterion {
     let of = |wanted: Option<bool>| -> Vec<f64> {
-        let ratios = ratios.iter().filter(|(score, _)| wanted.is_none_or(|colored| score.case.noise.colored == colored));
+        let ratios =
+            ratios.iter().filter(|(score, _)| wanted.is_none_or(|colored| score.case.noise.colored == colored));
         ratios.map(|(_, ratio)| *ratio).collect()
     };
     let all = of(None);

@@ -43,7 +43,8 @@ fn row(score: &Score) -> [String; 8] {
                     format!("{} ({})", named.id, named.alternatives.join(", "))
                 }
             });
-            let spots = [&diagnosed.top, &diagnosed.unexplained_top].map(|spot| spot.as_ref().map_or("–".to_owned(), spell));
+            let spots =
+                [&diagnosed.top, &diagnosed.unexplained_top].map(|spot| spot.as_ref().map_or("–".to_owned(), spell));
             (
                 format!("{:?}", diagnosed.verdict).to_lowercase(),
                 named.collect::<Vec<_>>().join("; "),

@@ -32,12 +32,10 @@ impl Programs {
     /// Where a program is missing.
     pub fn beside(diagnose: Option<PathBuf>) -> Result<Self> {
         let own = std::env::current_exe().context("cannot find the running program")?;
-        let folder = own
-            .ancestors()
-            .skip(1)
-            .take(2)
-            .find(|folder| folder.join("pam-identify").is_file())
-            .with_context(|| format!("{}: pam-identify is not beside it; build the workspace first", own.display()))?;
+        let folder =
+            own.ancestors().skip(1).take(2).find(|folder| folder.join("pam-identify").is_file()).with_context(
+                || format!("{}: pam-identify is not beside it; build the workspace first", own.display()),
+            )?;
         let diagnose = match diagnose {
             Some(diagnose) => diagnose.canonicalize().with_context(|| diagnose.display().to_string())?,
             None => folder.join("pam-diagnose"),

@@ -44,8 +44,15 @@ impl Results {
 
     /// A row per concealed effect: how its singles fared.
     pub fn by_effect(&self) -> Table {
-        let mut table =
-            Table::new(["concealed alone", "cases", "first", "class", "held out, median", "redraws", "severity, median"]);
+        let mut table = Table::new([
+            "concealed alone",
+            "cases",
+            "first",
+            "class",
+            "held out, median",
+            "redraws",
+            "severity, median",
+        ]);
         for id in CATALOGUE.into_iter().chain(NAMELESS) {
             let alone: Vec<&Score> = self.scores.iter().filter(|score| score.truth() == [id]).collect();
             if alone.is_empty() {
@@ -183,7 +190,9 @@ fn criterion_row(criterion: &Criterion) -> [String; 8] {
         criterion.asks.clone(),
         criterion.target.map_or("–".to_owned(), |target| format!("{sign} {}", percent(target, 0))),
         share(criterion.reached),
-        criterion.interval.map_or("–".to_owned(), |(low, high)| format!("{} to {}", percent(low, 1), percent(high, 1))),
+        criterion
+            .interval
+            .map_or("–".to_owned(), |(low, high)| format!("{} to {}", percent(low, 1), percent(high, 1))),
         criterion.n.to_string(),
         match criterion.passes() {
             Some(true) => "pass",

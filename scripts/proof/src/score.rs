@@ -86,7 +86,9 @@ impl From<&DiagnosisArtifact> for Diagnosed {
         let named = artifact.effects.iter();
         Self {
             verdict: artifact.verdict,
-            named: named.map(|effect| Named { id: effect.id.clone(), alternatives: effect.alternatives.clone() }).collect(),
+            named: named
+                .map(|effect| Named { id: effect.id.clone(), alternatives: effect.alternatives.clone() })
+                .collect(),
             top: artifact.regions.first().map(Spot::from),
             unexplained_top: artifact.unexplained_where.first().map(Spot::from),
             unexplained_share: artifact.unexplained_share,
@@ -136,9 +138,8 @@ impl Score {
 
     /// How many of the concealed effects are named.
     pub fn n_named(&self) -> usize {
-        let is_named = |id: &&str| {
-            self.diagnosed().is_some_and(|diagnosed| diagnosed.named.iter().any(|named| named.id == *id))
-        };
+        let is_named =
+            |id: &&str| self.diagnosed().is_some_and(|diagnosed| diagnosed.named.iter().any(|named| named.id == *id));
         self.truth().iter().filter(|id| is_named(id)).count()
     }
 

@@ -53,7 +53,8 @@ pub fn open(folder: &Path, announced: Option<&str>) -> Result<(Truth, String)> {
     let json = read(TRUTH)?;
     let sealed = String::from_utf8(read(HASH)?)?;
     let hash = sha256_hex(&json);
-    let is_same = sealed.split_whitespace().next() == Some(hash.as_str()) && announced.is_none_or(|known| known == hash);
+    let is_same =
+        sealed.split_whitespace().next() == Some(hash.as_str()) && announced.is_none_or(|known| known == hash);
     ensure!(is_same, "{}: the truth was changed after it was sealed", folder.join(TRUTH).display());
     Ok((serde_json::from_slice(&json)?, hash))
 }

@@ -28,8 +28,8 @@ pub const SETS: [Set; 5] = [
     },
     Set {
         name: "C",
-        estimation: &["isobaric-triangles", "pressure-steps", "length-chirp", "endurance", "multisine"],
-        holdout: &["isometric-ramps", "rate-ladder"],
+        estimation: &["isobaric-triangles", "pressure-steps", "rate-ladder", "endurance", "multisine"],
+        holdout: &["isometric-ramps", "length-steps"],
     },
     Set {
         name: "D",
@@ -46,10 +46,22 @@ pub const SETS: [Set; 5] = [
 /// Samples of all estimation recordings together, about.
 pub const ESTIMATION_SAMPLES: f64 = 48_000.0;
 
+/// Samples of the endurance protocol, which cannot be much shorter.
+pub const ENDURANCE_SAMPLES: f64 = 20_000.0;
+
 /// Samples of one held-out recording, about.
 pub const HOLDOUT_SAMPLES: f64 = 10_000.0;
 
-/// The set called `name`.
-pub fn named(name: &str) -> Option<&'static Set> {
-    SETS.iter().find(|set| set.name == name)
+impl Set {
+    /// Samples that an estimation recording is to have.
+    pub fn samples(&self, protocol: &str) -> f64 {
+        let n = self.estimation.len() as f64;
+        match (protocol, self.estimation.contains(&ENDURANCE)) {
+            (ENDURANCE, _) => ENDURANCE_SAMPLES,
+            (_, true) => (ESTIMATION_SAMPLES - ENDURANCE_SAMPLES) / (n - 1.0),
+            _ => ESTIMATION_SAMPLES / n,
+        }
+    }
 }
+
+const ENDURANCE: &str = "endurance";
