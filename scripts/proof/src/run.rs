@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::case::Case;
 use crate::draw::{self, plan};
-use crate::folder::{self, DIAGNOSIS, MODEL, Recordings};
+use crate::folder::{self, DIAGNOSIS, Recordings};
 use crate::heldout;
 use crate::programs::{Programs, Took};
 use crate::results::Results;
@@ -46,6 +46,7 @@ impl Sealed {
                 Err(reason) => dropped.push(format!("{reason:#}")),
             }
         }
+        let folder = &std::path::absolute(folder)?;
         let truth = folder.join(TRUTH);
         std::fs::create_dir_all(&truth).with_context(|| format!("cannot make {}", truth.display()))?;
         let truth_of = Truth { seed, cases };
@@ -58,6 +59,7 @@ impl Sealed {
     /// # Errors
     /// Where a file is missing or the truth is not the one that was sealed.
     pub fn found(folder: &Path) -> Result<Self> {
+        let folder = &std::path::absolute(folder)?;
         let (truth, hash) = seal::open(&folder.join(TRUTH), None)?;
         Ok(Self { folder: folder.to_owned(), hash, cases: truth.cases, dropped: Vec::new() })
     }
@@ -140,20 +142,17 @@ fn diagnose(case: &Case, folder: &Path, programs: &Programs, fresh: bool) -> Res
 fn score(case: Case, took: Result<Took>, root: &Path, programs: &Programs) -> Result<Score> {
     let folder = root.join(CASES).join(&case.name);
     let hidden = root.join(TRUTH).join(&case.name);
-    let outcome = took.and_then(|took| {
+    let judged = took.and_then(|took| {
         let (artifact, _) = DiagnosisArtifact::read(&folder.join(DIAGNOSIS))?;
-        Ok((Diagnosed::from(&artifact), took))
-    });
-    let mut heldout = None;
-    if outcome.is_ok() && folder.join(MODEL).is_file() {
         std::fs::create_dir_all(&hidden)?;
         let logs = folder::write_noise_free(&case, &hidden)?;
-        heldout = heldout::errors(programs, &folder, &logs).ok();
+        let heldout = heldout::errors(programs, &folder, &logs);
         std::fs::remove_dir_all(&hidden)?;
-    }
-    let (outcome, Took { identify_s, diagnose_s }) = match outcome {
-        Ok((diagnosed, took)) => (Outcome::Diagnosed(diagnosed), took),
-        Err(reason) => (Outcome::Failed(format!("{reason:#}")), Took::default()),
+        Ok((Diagnosed::from(&artifact), heldout?, took))
+    });
+    let (outcome, heldout, Took { identify_s, diagnose_s }) = match judged {
+        Ok((diagnosed, heldout, took)) => (Outcome::Diagnosed(diagnosed), Some(heldout), took),
+        Err(reason) => (Outcome::Failed(format!("{reason:#}")), None, Took::default()),
     };
     Ok(Score { case, outcome, heldout, identify_s, diagnose_s })
 }
