@@ -5,7 +5,7 @@ OUT := out
 DATA := datasets/bench-nominal
 BIN := target/release
 
-.PHONY: all test check bench tables datasets recordings clean cargo-is-there
+.PHONY: all test check bench tables datasets recordings prove prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --workspace --bins
@@ -44,6 +44,19 @@ datasets: cargo-is-there
 # Recordings of real muscles, from their origin; needs a network.
 recordings:
 	@scripts/fetch-recordings
+
+# Physics concealed in fresh recordings, diagnosed without the truth, scored. The full run writes its results into
+# scripts/proof; a smaller one, as make prove CASES=24, prints them.
+CASES ?= 400
+prove: SEED ?= $(shell date +%s)
+prove: cargo-is-there
+	@$(CARGO) build --release --locked --workspace --bins
+	$(BIN)/prove --cases $(CASES) --seed $(SEED) $(if $(filter 400,$(CASES)),--record scripts/proof)
+
+# The same question to two real muscles, where their recordings are (make recordings, or PAM_RECORDINGS=folder).
+prove-real: cargo-is-there
+	@$(CARGO) build --release --locked --workspace --bins
+	$(BIN)/prove-real $(if $(PAM_RECORDINGS),--recordings $(PAM_RECORDINGS)) --record scripts/proof
 
 clean:
 	@rm -rf $(OUT)
