@@ -127,7 +127,7 @@ fn worth(trial: &Trial, best: &Judged, floor_square: f64, limits: &Limits) -> bo
     let mismatch = best.held_out.mean_square() - floor_square;
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
-    gained > LEAST_SHARE * mismatch && gained > matters && chance(&best.held_out, &trial.held_out) < CHANCE
+    gained > LEAST_SHARE * mismatch && gained > matters && trial.log_ratio > LEAST_LOG_RATIO
 }
 
 /// Probability that an improvement of held-out blocks is chance: a t-test on the log ratios of the blocks that it touches.
