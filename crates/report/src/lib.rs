@@ -12,11 +12,13 @@ mod confusion_figure;
 mod diagnosis_page;
 mod envelope_figure;
 mod error;
+mod escape;
 mod fit_figure;
 mod inverse_figure;
 mod lift_figure;
 pub mod number;
 pub mod plot;
+mod residual_cells;
 mod signature_figure;
 mod table;
 
