@@ -20,13 +20,13 @@ impl<'a> Channel<'a> {
     /// level's name; `cells`: number of bins where the channel moves.
     pub(crate) fn new(title: &str, recordings: Vec<&'a [f64]>, same: f64, decimals: usize, cells: usize) -> Self {
         let all = || recordings.iter().flat_map(|values| values.iter().copied());
-        let same = same * all().map(f64::abs).fold(0.0, f64::max);
+        let same = same * all().filter(|value| value.is_finite()).map(f64::abs).fold(0.0, f64::max);
         let Some(levels) = levels(&recordings, same) else {
             let (lowest, highest) =
                 all().fold((f64::NAN, f64::NAN), |(low, high): (f64, f64), value| (low.min(value), high.max(value)));
             return Self { bins: Bins::Equal(Axis::linear(title, lowest, highest, 5), cells), recordings, fixed: None };
         };
-        let fixed = recordings.iter().map(|values| nearest(&levels, mean(values))).collect();
+        let fixed = recordings.iter().map(|values| nearest(&levels, finite_mean(values))).collect();
         let names = levels.iter().map(|level| with_minus(format!("{level:.decimals$}"))).collect();
         Self { bins: Bins::Named(title.to_owned(), names), recordings, fixed: Some(fixed) }
     }
@@ -53,15 +53,21 @@ impl<'a> Channel<'a> {
 /// The values at which a channel stands still, rising, if it does so in every recording.
 fn levels(recordings: &[&[f64]], same: f64) -> Option<Vec<f64>> {
     let mut levels = Vec::new();
-    for values in recordings.iter().filter(|values| !values.is_empty()) {
+    for values in recordings.iter().filter(|values| values.iter().any(|value| value.is_finite())) {
         if quantile(values, 0.98) - quantile(values, 0.02) > same {
             return None;
         }
-        levels.push(mean(values));
+        levels.push(finite_mean(values));
     }
     levels.sort_by(f64::total_cmp);
     let levels: Vec<f64> = levels.chunk_by(|a, b| b - a <= same).map(mean).collect();
     (!levels.is_empty() && levels.len() <= MOST_LEVELS).then_some(levels)
+}
+
+fn finite_mean(values: &[f64]) -> f64 {
+    let finite = values.iter().filter(|value| value.is_finite());
+    let (n, sum) = finite.fold((0.0, 0.0), |(n, sum), value| (n + 1.0, sum + value));
+    sum / n
 }
 
 fn nearest(levels: &[f64], value: f64) -> usize {
@@ -69,13 +75,14 @@ fn nearest(levels: &[f64], value: f64) -> usize {
     (0..levels.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// The value that `share` of `values` lie below; NaN for none.
+/// The value that `share` of the finite `values` lie below; NaN for none.
 pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
-    if values.is_empty() {
+    // Every few samples are enough for a picture.
+    let every = values.len().div_ceil(20_000).max(1);
+    let mut drawn: Vec<f64> = values.iter().copied().step_by(every).filter(|value| value.is_finite()).collect();
+    if drawn.is_empty() {
         return f64::NAN;
     }
-    // Every few samples are enough for a picture.
-    let mut drawn: Vec<f64> = values.iter().copied().step_by(values.len().div_ceil(20_000)).collect();
     let rank = ((drawn.len() - 1) as f64 * share).round() as usize;
     *drawn.select_nth_unstable_by(rank, f64::total_cmp).1
 }

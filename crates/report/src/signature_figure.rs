@@ -25,7 +25,7 @@ pub struct SignaturePanel {
     pub series: Vec<SignatureSeries>,
 }
 
-/// One line of a panel, in the order of its points.
+/// One line of a panel, in the order of its points; where it leaps along the horizontal, it is interrupted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SignatureSeries {
     /// Name in the legend.
@@ -85,10 +85,16 @@ fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
         axes.line(canvas, [(axes.x.from, 0.0), (axes.x.to, 0.0)], palette::SILVER, 1.0);
     }
     let mut keys = Vec::new();
-    for (line, color) in panel.series.iter().zip(COLORS.iter().cycle()) {
-        let (xs, ys): (Vec<f64>, Vec<f64>) = points(line).unzip();
-        let kept = thin(&ys, POINTS);
-        axes.line(canvas, kept.into_iter().map(|row| (xs[row], ys[row])), *color, 1.9);
+    // A line by itself is what the effect does.
+    let colors = COLORS.iter().cycle().skip(usize::from(panel.series.len() == 1));
+    for (line, color) in panel.series.iter().zip(colors) {
+        // From reversal to reversal a coordinate may start anew: no line leads back.
+        let far = 0.2 * (axes.x.to - axes.x.from);
+        let values: Vec<(f64, f64)> = points(line).collect();
+        for run in values.chunk_by(|a, b| (a.0 - b.0).abs() < far) {
+            let ys: Vec<f64> = run.iter().map(|(_, y)| *y).collect();
+            axes.line(canvas, thin(&ys, POINTS).into_iter().map(|row| run[row]), *color, 1.9);
+        }
         keys.push(Key::new(line.name.clone(), Mark::Line(1.9), *color));
     }
     canvas.bold(&panel.title, (axes.frame.left, cell.top + 14.0), Anchor::Start, 13.5, palette::INK);

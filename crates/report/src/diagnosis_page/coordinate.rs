@@ -84,7 +84,7 @@ impl PageCoordinate {
     }
 
     /// An SI value in [`unit`](Self::unit).
-    pub(super) fn from_si(self, value: f64) -> f64 {
+    pub(super) fn of_si(self, value: f64) -> f64 {
         match self {
             Self::Time | Self::TimeSinceLastMove | Self::Cycle | Self::Force => value,
             Self::Pressure => 1e-3 * value,
@@ -95,18 +95,20 @@ impl PageCoordinate {
 
     /// An interval of SI values as people write it: `0–1.2 mm`.
     pub(super) fn interval(self, from: f64, to: f64) -> String {
-        let (from, to) = (self.from_si(from), self.from_si(to));
+        let (from, to) = (self.of_si(from), self.of_si(to));
         let text = format!("{} to {} {}", rounded(from, to - from), rounded(to, to - from), self.unit());
         text.trim_end().to_owned()
     }
 }
 
-/// `value` to a hundredth of `span`, at least to the whole number.
+/// `value` as an end of an interval `span` wide.
 fn rounded(value: f64, span: f64) -> String {
     if !(value.is_finite() && span.is_finite() && span > 0.0) {
         return significant(value, 3);
     }
-    let decimals = (1.0 - span.log10().floor()).clamp(0.0, 6.0) as usize;
+    // Two digits of the span, and of a small end that is not nothing beside it.
+    let smaller = if value.abs() > 1e-2 * span { value.abs().min(span) } else { span };
+    let decimals = (1.0 - smaller.log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.decimals$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     crate::number::with_minus(text.to_owned())
@@ -120,6 +122,7 @@ mod tests {
     fn intervals_are_written_in_units_that_people_use() {
         assert_eq!(PageCoordinate::Pressure.interval(100e3, 250e3), "100 to 250 kPa");
         assert_eq!(PageCoordinate::TravelSinceReversal.interval(0.0, 1.234e-3), "0 to 1.2 mm");
+        assert_eq!(PageCoordinate::TravelSinceReversal.interval(5e-5, 1.6e-3), "0.05 to 1.6 mm");
         assert_eq!(PageCoordinate::Contraction.interval(-0.01, 0.213), "−1 to 21 %");
         assert_eq!(PageCoordinate::Cycle.interval(1.0, 3.0), "1 to 3");
     }

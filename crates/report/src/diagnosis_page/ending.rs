@@ -111,7 +111,8 @@ pub(super) fn next(experiment: Option<&PageExperiment>) -> String {
         };
         let decides = match &experiment.separates[..] {
             [one] => format!("It decides on {one}."),
-            many => format!("It decides between {}.{apart}", many.join(", ")),
+            [first @ .., last] => format!("It decides between {} and {last}.{apart}", first.join(", ")),
+            [] => String::new(),
         };
         html.push_str(&paragraph(&decides));
     }

@@ -57,7 +57,11 @@ fn scripts(text: &str) -> String {
             _ => "",
         };
         let end = (at + 1..characters.len()).find(|next| !word(*next)).unwrap_or(characters.len());
-        if tag.is_empty() || end == at + 1 {
+        if characters[at] == '-' && !word(at.wrapping_sub(1)) {
+            // A minus, but not the hyphen of a compound word.
+            out.push('−');
+            at += 1;
+        } else if tag.is_empty() || end == at + 1 {
             out.push_str(&escaped(&characters[at].to_string()));
             at += 1;
         } else {
@@ -69,9 +73,11 @@ fn scripts(text: &str) -> String {
     out
 }
 
-/// A force for people: `2.31 N`.
+/// A force for people: `2.31 N`, `0.61 N`, `120 N`.
 pub(super) fn newtons(value: f64) -> String {
-    format!("{} N", significant(value, 3))
+    let size = value.abs();
+    // Forces beside one another show the same decimals on both sides of 1 N.
+    format!("{} N", significant(value, if size < 0.995 { 2 } else { 3 }))
 }
 
 /// A share for people: `38 %`.
@@ -80,7 +86,11 @@ pub(super) fn percent(share: f64) -> String {
         return "–".to_owned();
     }
     let percent = 100.0 * share;
-    if percent > 0.0 && percent < 1.0 { "< 1 %".to_owned() } else { format!("{percent:.0} %") }
+    match percent {
+        _ if percent > 0.0 && percent < 1.0 => "< 1 %".to_owned(),
+        _ if percent > 99.0 && percent < 100.0 => "> 99 %".to_owned(),
+        _ => format!("{percent:.0} %"),
+    }
 }
 
 #[cfg(test)]
@@ -89,14 +99,14 @@ mod tests {
 
     #[test]
     fn equations_have_lines_and_scripts() {
-        let html = equation("F = F_c(p) z_i,  a < b^2,  gas_gain");
-        let expected = "<div class=\"equation\"><span>F = F<sub>c</sub>(p) z<sub>i</sub></span>\n\
+        let html = equation("F = F_c(p) - z_i,  a < b^2,  gas_gain");
+        let expected = "<div class=\"equation\"><span>F = F<sub>c</sub>(p) − z<sub>i</sub></span>\n\
                         <span>a &lt; b<sup>2</sup></span>\n<span>gas_gain</span></div>\n";
         assert_eq!(html, expected);
     }
 
     #[test]
     fn shares_are_whole_percents() {
-        assert_eq!([0.0, 0.004, 0.376, 1.0].map(percent), ["0 %", "< 1 %", "38 %", "100 %"]);
+        assert_eq!([0.0, 0.004, 0.376, 0.999, 1.0].map(percent), ["0 %", "< 1 %", "38 %", "> 99 %", "100 %"]);
     }
 }

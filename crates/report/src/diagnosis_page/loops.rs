@@ -79,9 +79,9 @@ pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
     let x = stretch.column(coordinate);
     let rows = stretch.rows.clone();
     let lines: [(&[f64], Color, f64); 3] = [
-        (&stretch.samples.force_n[rows.clone()], palette::INK, 3.2),
-        (&stretch.samples.base_n[rows.clone()], BEFORE, 1.8),
-        (&stretch.model_n[rows], AFTER, 1.8),
+        (&stretch.samples.force_n[rows.clone()], palette::SILVER, 1.6),
+        (&stretch.samples.base_n[rows.clone()], BEFORE, 2.0),
+        (&stretch.model_n[rows], AFTER, 2.0),
     ];
     let course = parabola(x, lines[0].0);
     let without: Vec<Vec<f64>> = lines
@@ -106,9 +106,9 @@ pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
         let without = [0, 1, 2].map(|line| (without[line].as_slice(), lines[line].1, lines[line].2));
         draw(right, "The same, less the mean course of the measured force", "difference (N)", &without);
         let keys = [
-            Key::new("measured", Mark::Line(3.2), palette::INK),
-            Key::new("base model", Mark::Line(1.8), BEFORE),
-            Key::new("with the named effects", Mark::Line(1.8), AFTER),
+            Key::new("measured", Mark::Line(1.6), palette::SILVER),
+            Key::new("base model", Mark::Line(2.0), BEFORE),
+            Key::new("with the named effects", Mark::Line(2.0), AFTER),
         ];
         legend(canvas, &keys, sheet.right - 16.0, 14.0);
     })

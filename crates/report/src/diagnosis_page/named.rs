@@ -1,14 +1,15 @@
 //! Section: which effects were left out of the model.
 
 use super::html::{equation, heading, newtons, paragraph, percent, remark, table};
-use super::{DiagnosisPage, PageAlternative, PageCandidate, PageEffect, PageEvidence, PageParameter};
-use crate::Table;
+use super::{DiagnosisPage, PageAlternative, PageCandidate, PageEffect, PageEvidence, PageParameter, PageVerdict};
 use crate::escape::escaped;
 use crate::number::{engineering, engineering_with_stderr, probability, significant};
+use crate::{Table, number};
 
 pub(super) fn named(page: &DiagnosisPage) -> String {
     let mut html = match page.effects.len() {
-        0 => paragraph("No effect of the catalogue is needed, or none explains what is there."),
+        0 if page.verdict == PageVerdict::Consistent => paragraph("Nothing that matters in these recordings."),
+        0 => paragraph("No effect of the catalogue explains what is there."),
         1 => paragraph("One effect that the model leaves out is named."),
         n => paragraph(&format!("{n} effects that the model leaves out are named, in order of evidence.")),
     };
@@ -39,7 +40,7 @@ fn effect(effect: &PageEffect) -> String {
     html.push_str("<h4>Why it is believed</h4>\n");
     html.push_str(&paragraph(&evidence(&effect.evidence)));
     if !effect.signature.is_empty() {
-        html.push_str(&paragraph(&format!("What to look for in the figures above: {}", effect.signature)));
+        html.push_str(&format!("<p><strong>Signature:</strong> {}</p>\n", escaped(&effect.signature)));
     }
     html.push_str("<h4>What it is confused with</h4>\n");
     if effect.alternatives.is_empty() {
@@ -110,7 +111,7 @@ fn candidates(candidates: &[PageCandidate]) -> Table {
         table.row([
             if candidate.name.is_empty() { candidate.id.clone() } else { candidate.name.clone() },
             percent(candidate.explains),
-            significant(evidence.log_ratio, 3),
+            number::with_minus(format!("{:.1}", evidence.log_ratio)),
             format!("{} of {}", evidence.blocks_improved, evidence.n_blocks),
             probability(evidence.p_value),
             candidate.outcome.clone(),

@@ -39,8 +39,13 @@ pub(super) fn place(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Stri
     html.push_str(&heading("Over pressure and contraction"));
     html.push_str(&figure(
         &residual_maps::residual_maps(recordings, &page.regions, noise_n)?,
-        "Red: the muscle pulls more than the model says; blue: less. The size, root mean square, also shows residuals \
-         that cancel in the mean. Maps before and after share one color scale; cells without samples stay blank.",
+        if page.effects.is_empty() {
+            "Red: the muscle pulls more than the model says; blue: less. The size, root mean square, also shows residuals \
+             that cancel in the mean. Cells without samples stay blank."
+        } else {
+            "Red: the muscle pulls more than the model says; blue: less. The size, root mean square, also shows residuals \
+             that cancel in the mean. Maps before and after share one color scale; cells without samples stay blank."
+        },
     ));
     html.push_str(&heading("Over time"));
     let mut shown: Vec<&Samples> = recordings.iter().collect();

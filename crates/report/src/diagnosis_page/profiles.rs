@@ -40,7 +40,7 @@ pub(super) fn profiles(recordings: &[Samples], regions: &[PageRegion], noise_n: 
         for (index, profile) in profiles.iter().enumerate() {
             let (row, column) = (index / COLUMNS, index % COLUMNS);
             let (left, top) = (LEFT + CELL.0 * column as f64, 34.0 + CELL.1 * row as f64);
-            let frame = Rect { left, top: top + 30.0, right: left + CELL.0 - 22.0, bottom: top + CELL.1 - 48.0 };
+            let frame = Rect { left, top: top + 30.0, right: left + CELL.0 - 32.0, bottom: top + CELL.1 - 48.0 };
             let y = Axis::exact(if column == 0 { "residual (N)" } else { "" }, -limit, limit, 5);
             let mut panel = Panel { frame, x: profile.axis.clone(), y, upward_labels: false };
             if column > 0 {
@@ -59,7 +59,7 @@ pub(super) fn profiles(recordings: &[Samples], regions: &[PageRegion], noise_n: 
         if regions.iter().any(|region| SHOWN.contains(&region.coordinate)) {
             keys.push(Key::new("region that stands out", Mark::Patch, MARKED.faded(0.45)));
         }
-        legend(canvas, &keys, sheet.right - 22.0, 16.0);
+        legend(canvas, &keys, sheet.right - 32.0, 16.0);
     })
 }
 
@@ -116,7 +116,7 @@ impl Profile {
         panel.band(canvas, -noise_n, noise_n, NOISE);
         for region in regions.iter().filter(|region| region.coordinate == self.coordinate) {
             let [left, right] = [region.from, region.to].map(|value| {
-                let value = self.coordinate.from_si(value).max(panel.x.from);
+                let value = self.coordinate.of_si(value).max(panel.x.from);
                 panel.frame.left + panel.x.fraction(value).clamp(0.0, 1.0) * panel.frame.width()
             });
             let right = right.max(left + 2.0);

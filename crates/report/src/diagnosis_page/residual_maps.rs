@@ -23,13 +23,13 @@ pub(super) fn residual_maps(
     let grid = Grid { pressure, contraction };
     let before_cells = grid.sums(recordings, |samples| &samples.before_n);
     let after_cells = grid.sums(recordings, Samples::last_n);
-    let limit = |of: fn(&Sum) -> Option<f64>| {
+    let limit = |of: fn(&Sum) -> Option<f64>, least: f64| {
         let sizes: Vec<f64> = before_cells.iter().chain(&after_cells).filter_map(of).map(f64::abs).collect();
         // The few largest cells may saturate; a map within the noise must not look alarming.
-        let limit = quantile(&sizes, 0.985).max(noise_n);
+        let limit = quantile(&sizes, 0.985).max(least);
         if limit > 0.0 { limit } else { 1.0 }
     };
-    let (mean_limit, rms_limit) = (limit(Sum::mean), limit(Sum::rms));
+    let (mean_limit, rms_limit) = (limit(Sum::mean, noise_n), limit(Sum::rms, 2.5 * noise_n));
     let mean_bar = ColorBar { title: "mean (N)".to_owned(), from: -mean_limit, to: mean_limit, color: mean_color };
     let rms_bar = ColorBar { title: "rms (N)".to_owned(), from: 0.0, to: rms_limit, color: size_color };
     let height = if after { 2.0 * ROW } else { ROW };
@@ -59,7 +59,7 @@ pub(super) fn residual_maps(
 /// A bar along the edge of the map over a region of its coordinates.
 fn mark(canvas: &mut Canvas<'_>, grid: &Grid<'_>, panel: &Panel, region: &PageRegion) {
     const COLOR: Color = palette::ORANGE;
-    let [from, to] = [region.from, region.to].map(|value| region.coordinate.from_si(value));
+    let [from, to] = [region.from, region.to].map(|value| region.coordinate.of_si(value));
     let within = |axis: &Axis, value: f64| axis.fraction(value).clamp(0.0, 1.0);
     let Rect { left, top, right, bottom } = panel.frame;
     match region.coordinate {

@@ -24,12 +24,21 @@ const STYLE: &str = include_str!("style.css");
 
 /// Color for a mean residual, −1 to 1 for a share from 0 to 1.
 pub(super) fn mean_color(share: f64) -> Color {
-    diverging(step(2.0 * share - 1.0))
+    mean_at(step(2.0 * share - 1.0))
 }
 
 /// Color for a size, 0 to 1.
 pub(super) fn size_color(share: f64) -> Color {
-    sequential(step(share.max(0.0)))
+    size_at(step(share.max(0.0)))
+}
+
+/// The middle is gray, or cells without a residual would look like cells without samples.
+fn mean_at(value: f64) -> Color {
+    diverging(value).toward(Color::new(0xE2, 0xE5, 0xE9), (1.0 - 3.0 * value.abs()).max(0.0))
+}
+
+fn size_at(value: f64) -> Color {
+    sequential(value).toward(Color::new(0xE6, 0xEC, 0xF2), (1.0 - 4.0 * value).max(0.0))
 }
 
 fn step(value: f64) -> f64 {
@@ -51,18 +60,18 @@ pub(super) fn style() -> String {
     for index in -STEPS..=STEPS {
         let share = f64::from(index) / f64::from(STEPS);
         let end = if share < 0.0 { COLD } else { WARM };
-        replace(diverging(share), MIDDLE.toward(end, share.abs().powf(0.8)));
+        replace(mean_at(share), MIDDLE.toward(end, share.abs().powf(0.8)));
     }
     for index in 0..=STEPS {
         let share = f64::from(index) / f64::from(STEPS);
-        replace(sequential(share), MIDDLE.toward(COLD, share));
+        replace(size_at(share), MIDDLE.toward(COLD, share));
     }
     style.push_str("}\n");
     style
 }
 
 /// Middle and ends of the color maps in the dark.
-const MIDDLE: Color = Color::new(0x20, 0x25, 0x2C);
+const MIDDLE: Color = Color::new(0x29, 0x30, 0x39);
 const COLD: Color = Color::new(0x8F, 0xD0, 0xFF);
 const WARM: Color = Color::new(0xFF, 0xA3, 0x7A);
 

@@ -16,8 +16,8 @@ pub(super) fn telling_apart(isolability: Option<&PageIsolability>, noise_n: f64)
     };
     let mut html = paragraph(
         "Before anything is blamed: the residual that each effect of the catalogue would leave in these recordings, at \
-         a typical size and after a refit of the base model, compared with that of every other one. Dark cells are \
-         pairs that look alike here, whatever the analysis; the figure behind each name is how large a residual it \
+         a typical size and after a refit of the base model, compared with that of every other one. Strongly colored cells \
+         are pairs that look alike here, whatever the analysis; the figure behind each name is how large a residual it \
          would leave.",
     );
     html.push_str(&figure(
@@ -94,10 +94,10 @@ fn matrix(isolability: &PageIsolability) -> Result<String, FigureError> {
             .collect(),
         bar: ColorBar { title: "cosine".to_owned(), from: 0.0, to: 1.0, color: size_color },
     };
-    // Cells stay about square between the labels on both sides.
+    // The axis has no title, whose room the sheet can do without. Cells stay about square between the labels on both sides.
     let height = (26 * n as u32 + 240).clamp(360, 940);
     Canvas::document(1040, height, "What these recordings can tell apart", |canvas, sheet| {
         let spare = (sheet.width() - 84.0 - 270.0 - 40.0 * n as f64).max(0.0);
-        map.draw(canvas, sheet.inset(0.0, 0.0, spare, 0.0));
+        map.draw(canvas, sheet.inset(0.0, 0.0, spare, -22.0));
     })
 }
