@@ -75,6 +75,9 @@ fn scripts(text: &str) -> String {
 
 /// A force for people: `2.31 N`, `0.61 N`, `120 N`.
 pub(super) fn newtons(value: f64) -> String {
+    if !value.is_finite() {
+        return significant(value, 3);
+    }
     let size = value.abs();
     // Forces beside one another show the same decimals on both sides of 1 N.
     format!("{} N", significant(value, if size < 0.995 { 2 } else { 3 }))
