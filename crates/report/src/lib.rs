@@ -5,20 +5,33 @@
 //!
 //! In reading order: [`number`] (how numbers are written), [`Table`], [`plot`] (what figures are made of),
 //! [`fit_figure()`] (the figure of a fit), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
-//! [`envelope_figure()`] (of many lifts).
+//! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`signature_figure()`] (what
+//! an effect looks like), [`confusion_figure()`] (what was concealed and what was named).
 
+mod confusion_figure;
+mod diagnosis_page;
 mod envelope_figure;
 mod error;
+mod escape;
 mod fit_figure;
 mod inverse_figure;
 mod lift_figure;
 pub mod number;
 pub mod plot;
+mod residual_cells;
+mod signature_figure;
 mod table;
 
+pub use confusion_figure::{ConfusionFigure, confusion_figure};
+pub use diagnosis_page::{
+    DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEvidence,
+    PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording, PageRegion,
+    PageUnknown, PageVerdict, diagnosis_page,
+};
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;
 pub use fit_figure::{FitFigure, FitRecording, Role, SwarmStart, fit_figure};
 pub use inverse_figure::{InverseCell, InverseFigure, InverseMap, RegionBar, SlopeCell, SlopeMap, inverse_figure};
 pub use lift_figure::{LiftArm, LiftFigure, lift_figure};
+pub use signature_figure::{SignatureFigure, SignaturePanel, SignatureSeries, signature_figure};
 pub use table::Table;

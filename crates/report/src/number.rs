@@ -50,10 +50,10 @@ pub fn with_stderr(value: f64, stderr: f64) -> String {
 }
 
 /// `value` in `unit` with the prefix that keeps one to three digits before the point: `152 kPa`. A unit
-/// that is empty, `1`, or a power (`m^2`, `m²`) takes no prefix.
+/// that is empty, `1`, a reciprocal (`1/s`), or a power (`m^2`, `m²`) takes no prefix.
 pub fn engineering(value: f64, unit: &str, digits: usize) -> String {
     const PREFIXES: [&str; 9] = ["p", "n", "µ", "m", "", "k", "M", "G", "T"];
-    let plain = unit.is_empty() || unit == "1" || unit.contains(['^', '²', '³', '%', '°']) || unit == "rad";
+    let plain = unit.is_empty() || unit.starts_with('1') || unit.contains(['^', '²', '³', '%', '°']) || unit == "rad";
     if plain || !value.is_finite() || value == 0.0 {
         let unit = if unit == "1" { "" } else { unit };
         return format!("{} {unit}", significant(value, digits)).trim_end().to_owned();
@@ -63,6 +63,37 @@ pub fn engineering(value: f64, unit: &str, digits: usize) -> String {
     let prefix = PREFIXES[(step + 4) as usize];
     format!("{} {prefix}{unit}", significant(value / 1000f64.powi(step), digits))
 }
+
+/// `value ± stderr` in `unit` with the prefix of [`engineering`]: `1.21 ± 0.03 mm`.
+pub fn engineering_with_stderr(value: f64, stderr: f64, unit: &str) -> String {
+    if !(stderr.is_finite() && stderr > 0.0 && value.is_finite()) {
+        return engineering(value, unit, 3);
+    }
+    let size = engineering(value.abs().max(stderr), unit, 3);
+    let Some((number, prefixed)) = size.split_once(' ') else { return with_stderr(value, stderr) };
+    // The factor that the prefix stands for, read off the power of ten between number and size.
+    let shown: f64 = number.parse().unwrap_or(1.0);
+    let scale = 10f64.powi((shown / value.abs().max(stderr)).log10().round() as i32);
+    format!("({}) {prefixed}", with_stderr(value * scale, stderr * scale))
+}
+
+/// A probability for a table: `0.032`, `2 × 10⁻⁶`, `< 10⁻¹⁵` where rounding has the last word.
+pub fn probability(p: f64) -> String {
+    if !p.is_finite() || p >= 1e-3 {
+        return significant(p.min(1.0), 2);
+    }
+    if p < 1e-15 {
+        return "< 10⁻¹⁵".to_owned();
+    }
+    let scientific = format!("{p:.0e}");
+    let mantissa = scientific.split('e').next().unwrap_or("1").to_owned();
+    let exponent = exponent_of(&scientific).unsigned_abs().to_string();
+    let raised: String = exponent.bytes().map(|digit| RAISED[usize::from(digit - b'0')]).collect();
+    format!("{mantissa} × 10⁻{raised}")
+}
+
+/// Digits as exponents.
+const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
 /// Exponent in the output of `{:e}`.
 fn exponent_of(scientific: &str) -> i32 {
@@ -102,6 +133,22 @@ mod tests {
         assert_eq!(with_stderr(2.5e9, 3.0e7), "(2.50 ± 0.03)e9");
         assert_eq!(with_stderr(-0.0001, 0.04), "0.00 ± 0.04");
         assert_eq!(with_stderr(1.05213, f64::NAN), "1.052");
+    }
+
+    #[test]
+    fn uncertainty_takes_the_prefix_of_its_value() {
+        assert_eq!(engineering_with_stderr(1.213e-3, 3.1e-5, "m"), "(1.21 ± 0.03) mm");
+        assert_eq!(engineering_with_stderr(-152e3, 2e3, "Pa"), "(−152 ± 2) kPa");
+        assert_eq!(engineering_with_stderr(0.213, 0.02, "1"), "0.21 ± 0.02");
+        assert_eq!(engineering_with_stderr(0.35, f64::NAN, "s"), "350 ms");
+    }
+
+    #[test]
+    fn small_probabilities_are_powers_of_ten() {
+        let cases = [(0.0321, "0.032"), (1.0, "1.0"), (2.2e-6, "2 × 10⁻⁶"), (9.7e-11, "1 × 10⁻¹⁰"), (0.0, "< 10⁻¹⁵")];
+        for (p, expected) in cases {
+            assert_eq!(probability(p), expected);
+        }
     }
 
     #[test]

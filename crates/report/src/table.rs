@@ -1,7 +1,8 @@
-//! Tables for terminals and Markdown.
+//! Tables for terminals, Markdown and HTML.
 
 use comfy_table::{CellAlignment, ContentLineStyle, LineStyle, TableStyle, presets};
 
+use crate::escape::escaped;
 use crate::number::with_minus;
 
 /// A header, a thin rule, columns held apart by blanks.
@@ -56,8 +57,27 @@ impl Table {
         text
     }
 
+    /// As an HTML table; cells of columns that hold numbers have the class `number`.
+    pub fn to_html(&self) -> String {
+        let columns = self.columns();
+        let line = |name: &str, cells: &[String]| {
+            let cell = |column: usize| {
+                let text = cells.get(column).map_or(String::new(), |cell| escaped(cell));
+                let class = if self.is_numeric(column) { " class=\"number\"" } else { "" };
+                format!("<{name}{class}>{text}</{name}>")
+            };
+            format!("<tr>{}</tr>\n", (0..columns).map(cell).collect::<String>())
+        };
+        let body: String = self.rows.iter().map(|row| line("td", row)).collect();
+        format!("<table>\n<thead>{}</thead>\n<tbody>\n{body}</tbody>\n</table>\n", line("th", &self.header).trim_end())
+    }
+
+    fn columns(&self) -> usize {
+        self.rows.iter().map(Vec::len).max().unwrap_or(0).max(self.header.len())
+    }
+
     fn draw(&self, style: TableStyle, escape: impl Fn(&str) -> String) -> String {
-        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0).max(self.header.len());
+        let columns = self.columns();
         let padded = |cells: &[String]| -> Vec<String> {
             (0..columns).map(|column| cells.get(column).map_or(String::new(), |cell| escape(cell))).collect()
         };
@@ -88,7 +108,7 @@ fn is_number(cell: &str) -> bool {
     let unsigned = cell.trim_start_matches(['(', '-', '−', '+', '<', '>', ' ']);
     let first_word = unsigned.split([' ', ')']).next().unwrap_or("").trim_end_matches('%');
     unsigned.starts_with(|character: char| character.is_ascii_digit())
-        && first_word.chars().all(|character| character.is_ascii_digit() || "+-−.e".contains(character))
+        && first_word.chars().all(|character| character.is_ascii_digit() || "+-−.e⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(character))
 }
 
 #[cfg(test)]
@@ -124,6 +144,15 @@ mod tests {
 | tare             |             – |          |
 ";
         assert_eq!(parameters().to_markdown(), expected);
+    }
+
+    #[test]
+    fn an_html_table_marks_numbers_and_escapes_markup() {
+        let html = parameters().to_html();
+        assert!(html.contains("<th>parameter</th><th class=\"number\">value</th>"), "{html}");
+        assert!(html.contains("<tr><td>tare</td><td class=\"number\">–</td><td></td></tr>"), "{html}");
+        let mut table = Table::new(["<a> & b"]);
+        assert!(table.row(["<"]).to_html().contains("<th>&lt;a&gt; &amp; b</th>"));
     }
 
     #[test]

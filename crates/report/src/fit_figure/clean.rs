@@ -2,6 +2,7 @@
 
 use super::{FitRecording, Role};
 use crate::FigureError;
+pub(super) use crate::residual_cells::{mean, quantile};
 
 /// Finite samples of one recording, and what several panels need of them.
 #[derive(Debug)]
@@ -59,20 +60,4 @@ impl Clean {
 /// Lowest and highest of finite `values`; NaN both where there is none.
 pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     values.into_iter().fold((f64::NAN, f64::NAN), |(lowest, highest), value| (lowest.min(value), highest.max(value)))
-}
-
-/// The value that `share` of `values` lie below; NaN for none.
-pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
-    if values.is_empty() {
-        return f64::NAN;
-    }
-    // Every few samples are enough for a picture.
-    let mut drawn: Vec<f64> = values.iter().copied().step_by(values.len().div_ceil(20_000)).collect();
-    let rank = ((drawn.len() - 1) as f64 * share).round() as usize;
-    *drawn.select_nth_unstable_by(rank, f64::total_cmp).1
-}
-
-/// Mean of `values`; NaN for none.
-pub(super) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }

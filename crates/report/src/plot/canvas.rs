@@ -12,6 +12,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontDesc, IntoFont as _};
 
 use crate::FigureError;
+use crate::escape::escaped;
 use crate::plot::{Color, Rect};
 
 /// Backend units in a pixel.
@@ -215,17 +216,4 @@ fn rgba(color: Color) -> RGBAColor {
 
 fn stroke(color: Color, width: f64) -> ShapeStyle {
     ShapeStyle { color: rgba(color), filled: true, stroke_width: (width * FINE).round() as u32 }
-}
-
-fn escaped(text: &str) -> String {
-    let mut escaped = String::new();
-    for character in text.chars().filter(|character| !character.is_control()) {
-        match character {
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '&' => escaped.push_str("&amp;"),
-            other => escaped.push(other),
-        }
-    }
-    escaped
 }

@@ -2,6 +2,9 @@
 
 use crate::plot::{Anchor, Axis, Canvas, Color, Panel, Rect, palette};
 
+/// Color of cells without a value.
+pub(crate) const BLANK: Color = Color::new(0xFB, 0xFB, 0xFB);
+
 /// How one coordinate of a map is cut.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Bins {
@@ -73,7 +76,7 @@ impl Map {
     /// Draws the map into `cell`, below room for a title; gives the panel for more to be drawn on it.
     pub fn draw(&self, canvas: &mut Canvas<'_>, cell: Rect) -> Panel {
         let panel = Panel::new(cell, self.columns.axis(), self.rows.axis(), 84.0);
-        canvas.rect(panel.frame, Color::new(0xFB, 0xFB, 0xFB));
+        canvas.rect(panel.frame, BLANK);
         let (n_columns, n_rows) = (self.columns.count(), self.rows.count());
         let Rect { left, bottom, .. } = panel.frame;
         let (width, height) = (panel.frame.width() / n_columns as f64, panel.frame.height() / n_rows as f64);

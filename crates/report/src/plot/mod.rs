@@ -19,6 +19,7 @@ pub use bars::{Bar, Bars};
 pub use canvas::{Anchor, Canvas, text_width};
 pub use color::{Color, diverging, palette, sequential};
 pub use legend::{Key, Mark, legend};
+pub(crate) use map::BLANK;
 pub use map::{Bins, ColorBar, Map};
 pub use panel::{Panel, note, title};
 pub use rect::Rect;

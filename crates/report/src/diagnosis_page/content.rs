@@ -1,0 +1,236 @@
+//! What the page says, section by section.
+
+use super::{PageCoordinate, PageRecording};
+
+/// Everything that the page shows. Texts are plain: whatever they contain is shown as written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DiagnosisPage {
+    /// Title of the document, such as the muscle's name.
+    pub title: String,
+    /// What is to be believed.
+    pub verdict: PageVerdict,
+    /// The verdict in one sentence.
+    pub statement: String,
+    /// What a person should know before using the diagnosis.
+    pub warnings: Vec<String>,
+    /// Residuals before and after, on the recordings that the effects were fitted to.
+    pub estimation: PageFit,
+    /// The same on recordings that nothing was fitted to.
+    pub holdout: Option<PageFit>,
+    /// The samples.
+    pub recordings: Vec<PageRecording>,
+    /// Where model and recordings differ, the largest share first; empty where they agree.
+    pub regions: Vec<PageRegion>,
+    /// Effects that were left out, in order of evidence.
+    pub effects: Vec<PageEffect>,
+    /// Everything that was weighed.
+    pub candidates: Vec<PageCandidate>,
+    /// What is still unknown.
+    pub unknown: PageUnknown,
+    /// What to record next, where that would tell more.
+    pub next_experiment: Option<PageExperiment>,
+    /// What the recordings could tell apart at all.
+    pub isolability: Option<PageIsolability>,
+    /// How the diagnosis came about.
+    pub appendix: PageAppendix,
+}
+
+/// What is to be believed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PageVerdict {
+    /// Model and recordings agree.
+    Consistent,
+    /// The named effects explain the mismatch.
+    Explained,
+    /// They do, and so do others.
+    Ambiguous,
+    /// Structure is left without a name.
+    Unexplained,
+}
+
+/// Root mean squares of residuals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PageFit {
+    /// Base model, in N.
+    pub rmse_before_n: f64,
+    /// Base model and effects, in N.
+    pub rmse_after_n: f64,
+    /// What noise leaves of any model, in N.
+    pub noise_floor_n: f64,
+}
+
+/// An interval of one coordinate in which the residual exceeds the noise floor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageRegion {
+    /// Coordinate.
+    pub coordinate: PageCoordinate,
+    /// Lower end, SI as in the artifact; the page converts it to the unit that people use.
+    pub from: f64,
+    /// Upper end, SI as in the artifact.
+    pub to: f64,
+    /// Share of the excess that lies inside, in [0, 1].
+    pub share_of_excess: f64,
+    /// Probability by chance.
+    pub p_value: f64,
+    /// Name of the recording that it lies in, where it lies in one.
+    pub recording: Option<String>,
+}
+
+/// An effect that was left out of the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageEffect {
+    /// Catalogue id.
+    pub id: String,
+    /// Name in words.
+    pub name: String,
+    /// What happens, in a few sentences.
+    pub summary: String,
+    /// What it does to a residual.
+    pub signature: String,
+    /// The equation that was fitted.
+    pub equation: String,
+    /// Where the equation comes from.
+    pub source: String,
+    /// Its parameters.
+    pub parameters: Vec<PageParameter>,
+    /// Why it is believed.
+    pub evidence: PageEvidence,
+    /// Effects that these recordings cannot tell from it.
+    pub alternatives: Vec<PageAlternative>,
+    /// What would tell them apart, or confirm the effect.
+    pub separating_test: String,
+}
+
+/// A parameter of an effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageParameter {
+    /// Name.
+    pub name: String,
+    /// Meaning; may be empty.
+    pub meaning: String,
+    /// Value, SI; shown with the prefix that reads best.
+    pub value: f64,
+    /// SI unit; `1` where it has none.
+    pub unit: String,
+    /// Standard error, in the same unit.
+    pub stderr: Option<f64>,
+    /// How the value came about, in words: `fitted`, `at the end of its range`; may be empty.
+    pub status: String,
+}
+
+/// Evidence from held-out blocks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PageEvidence {
+    /// Sum over held-out blocks of `ln(mean square without / mean square with)`.
+    pub log_ratio: f64,
+    /// Held-out RMSE without it, in N.
+    pub rmse_without_n: f64,
+    /// Held-out RMSE with it, in N.
+    pub rmse_with_n: f64,
+    /// Held-out blocks that it improves.
+    pub blocks_improved: usize,
+    /// Held-out blocks.
+    pub n_blocks: usize,
+    /// Probability by chance.
+    pub p_value: f64,
+}
+
+/// An effect that looks alike.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PageAlternative {
+    /// Catalogue id.
+    pub id: String,
+    /// Name in words; may be empty.
+    pub name: String,
+    /// Why the two look alike; may be empty.
+    pub because: String,
+    /// What tells them apart; may be empty.
+    pub test: String,
+}
+
+/// An effect that was weighed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageCandidate {
+    /// Catalogue id.
+    pub id: String,
+    /// Name in words; may be empty.
+    pub name: String,
+    /// Evidence alone, against the base model.
+    pub evidence: PageEvidence,
+    /// Share of the excess that it explains alone, in [0, 1].
+    pub explains: f64,
+    /// What became of it, in words.
+    pub outcome: String,
+}
+
+/// What is still unknown.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PageUnknown {
+    /// Share of the excess over the noise floor that the effects leave, in [0, 1].
+    pub unexplained_share: f64,
+    /// Where structure is left.
+    pub regions: Vec<PageRegion>,
+    /// Base parameters that no such muscle has.
+    pub implausible: Vec<PageImplausible>,
+}
+
+/// A base parameter that no such muscle has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageImplausible {
+    /// Parameter or composite.
+    pub parameter: String,
+    /// Value.
+    pub value: f64,
+    /// Unit.
+    pub unit: String,
+    /// Lowest and highest plausible value.
+    pub plausible: [f64; 2],
+    /// What usually stands behind it.
+    pub likely_cause: String,
+}
+
+/// A recording that would tell more.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageExperiment {
+    /// Protocol.
+    pub protocol: String,
+    /// What it would decide between.
+    pub separates: Vec<String>,
+    /// How far apart it would drive them, in N.
+    pub separation_n: f64,
+    /// How to do it.
+    pub instruction: String,
+}
+
+/// What recordings can tell apart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageIsolability {
+    /// Catalogue ids.
+    pub ids: Vec<String>,
+    /// Residual that each effect would leave at a typical size, in N.
+    pub visible_n: Vec<f64>,
+    /// Cosine between the residuals of each pair, row by row.
+    pub cosine: Vec<Vec<f64>>,
+}
+
+/// How the diagnosis came about.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PageAppendix {
+    /// Program and version.
+    pub tool: String,
+    /// Files that went into it.
+    pub inputs: Vec<PageInput>,
+    /// Options as resolved, name and value.
+    pub options: Vec<(String, String)>,
+}
+
+/// A file that went into a diagnosis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PageInput {
+    /// What it was used as: `model`, `estimation`, `held out`.
+    pub role: String,
+    /// Path as given.
+    pub path: String,
+    /// SHA-256, hexadecimal.
+    pub sha256: String,
+}

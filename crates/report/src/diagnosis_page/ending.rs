@@ -1,0 +1,143 @@
+//! Sections at the end: what it buys, what is unknown, what to record next, how it came about.
+
+use super::fit_bars::fit_bars;
+use super::headline::share_explained;
+use super::html::{figure, heading, list, newtons, paragraph, percent, table};
+use super::loops::{Stretch, loops};
+use super::place::regions_table;
+use super::samples::Samples;
+use super::{DiagnosisPage, PageAppendix, PageExperiment};
+use crate::escape::escaped;
+use crate::number::engineering;
+use crate::{FigureError, Table};
+
+/// Section: what the effects buy.
+pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<String, FigureError> {
+    if page.effects.is_empty() {
+        return Ok(paragraph("Nothing was added to the model, so nothing changes."));
+    }
+    let mut html = match page.holdout {
+        Some(fit) => {
+            let gone = share_explained(fit).map_or(String::new(), |share| {
+                format!(", {} of what the base model leaves above the noise", percent(share))
+            });
+            paragraph(&format!(
+                "On recordings that nothing was fitted to, the residual falls from {} to {}{gone}; the noise floor is {}.",
+                newtons(fit.rmse_before_n),
+                newtons(fit.rmse_after_n),
+                newtons(fit.noise_floor_n)
+            ))
+        }
+        None => paragraph(
+            "No recording was held out, so the gain is known on the recordings used for fitting alone. Hold one out to \
+             see what the effects are worth on data that they have not seen.",
+        ),
+    };
+    if let Some(fit) = page.holdout {
+        let svg = fit_bars("Residual on held-out recordings", &[("held-out recordings", fit)], true)?;
+        html.push_str(&figure(&svg, "Residual on held-out recordings, before and after, against the noise floor."));
+    }
+    if let Some(stretch) = Stretch::most_telling(recordings) {
+        html.push_str(&heading("A loop before and after"));
+        let caption = format!(
+            "The stretch that gains most: {}. On the right a parabola through the measured force is taken off all three, \
+             so that the loop opens.",
+            stretch.words()
+        );
+        html.push_str(&figure(&loops(&stretch)?, &caption));
+    }
+    Ok(html)
+}
+
+/// Section: what is still unknown.
+pub(super) fn unknown(page: &DiagnosisPage) -> String {
+    let unknown = &page.unknown;
+    let mut html = if page.regions.is_empty() && page.effects.is_empty() {
+        paragraph("The base model leaves no excess over the noise floor that matters, so there is nothing to explain.")
+    } else {
+        paragraph(&format!(
+            "{} of the excess over the noise floor (mean squares) is left without an explanation.",
+            percent(unknown.unexplained_share)
+        ))
+    };
+    if unknown.regions.is_empty() {
+        html.push_str(&paragraph("No structure is left that would stand out of the noise."));
+    } else {
+        html.push_str(&heading("Structure that is left"));
+        html.push_str(&table(&regions_table(&unknown.regions)));
+    }
+    let open: Vec<String> = page
+        .effects
+        .iter()
+        .filter(|effect| !effect.alternatives.is_empty())
+        .map(|effect| {
+            let ids: Vec<&str> = effect.alternatives.iter().map(|alternative| alternative.id.as_str()).collect();
+            format!("What is named {} may be {} instead.", effect.id, ids.join(" or "))
+        })
+        .collect();
+    if !open.is_empty() {
+        html.push_str(&heading("What these recordings cannot decide"));
+        html.push_str(&list(&open));
+    }
+    if !unknown.implausible.is_empty() {
+        html.push_str(&heading("Base parameters that no such muscle has"));
+        let mut rows = Table::new(["parameter", "value", "plausible", "what usually stands behind it"]);
+        for entry in &unknown.implausible {
+            let [from, to] = entry.plausible.map(|value| engineering(value, &entry.unit, 3));
+            let value = engineering(entry.value, &entry.unit, 3);
+            rows.row([entry.parameter.clone(), value, format!("{from} to {to}"), entry.likely_cause.clone()]);
+        }
+        html.push_str(&table(&rows));
+    }
+    html
+}
+
+/// Section: what to record next.
+pub(super) fn next(experiment: Option<&PageExperiment>) -> String {
+    let Some(experiment) = experiment else {
+        return paragraph("Nothing: no protocol of the bench would tell more than these recordings do.");
+    };
+    let mut html = format!(
+        "<p>Record <strong>{}</strong>: {}</p>\n",
+        escaped(&experiment.protocol),
+        escaped(&experiment.instruction)
+    );
+    if !experiment.separates.is_empty() {
+        let apart = experiment.separation_n;
+        let apart = if apart.is_finite() {
+            format!(" It would drive them {} apart, root mean square.", newtons(apart))
+        } else {
+            String::new()
+        };
+        let decides = match &experiment.separates[..] {
+            [one] => format!("It decides on {one}."),
+            [first @ .., last] => format!("It decides between {} and {last}.{apart}", first.join(", ")),
+            [] => String::new(),
+        };
+        html.push_str(&paragraph(&decides));
+    }
+    html
+}
+
+/// Section: how the diagnosis came about.
+pub(super) fn appendix(appendix: &PageAppendix) -> String {
+    let mut html = String::new();
+    if !appendix.tool.is_empty() {
+        html.push_str(&paragraph(&format!("Written by {}.", appendix.tool)));
+    }
+    if !appendix.inputs.is_empty() {
+        let mut rows = Table::new(["input", "file", "SHA-256"]);
+        for input in &appendix.inputs {
+            rows.row([input.role.clone(), input.path.clone(), input.sha256.clone()]);
+        }
+        html.push_str(&format!("<div class=\"scroll hash\">\n{}</div>\n", rows.to_html()));
+    }
+    if !appendix.options.is_empty() {
+        let mut rows = Table::new(["option", "value"]);
+        for (name, value) in &appendix.options {
+            rows.row([name.clone(), value.clone()]);
+        }
+        html.push_str(&table(&rows));
+    }
+    html
+}

@@ -1,0 +1,67 @@
+//! Top of the page: verdict, statement, the figures that matter.
+
+use super::html::{list, newtons, percent};
+use super::{DiagnosisPage, PageFit, PageVerdict};
+use crate::escape::escaped;
+
+pub(super) fn headline(page: &DiagnosisPage) -> String {
+    let (class, words) = match page.verdict {
+        PageVerdict::Consistent => ("consistent", "Model and recordings agree"),
+        PageVerdict::Explained => ("explained", "The mismatch is explained"),
+        PageVerdict::Ambiguous => ("ambiguous", "The mismatch has more than one explanation"),
+        PageVerdict::Unexplained => ("unexplained", "Part of the mismatch has no name"),
+    };
+    let after = !page.effects.is_empty();
+    let mut cards = card_of_fit("On the recordings used for fitting", page.estimation, after);
+    cards.push_str(&match page.holdout {
+        Some(fit) => card_of_fit("On held-out recordings", fit, after),
+        None => card("On held-out recordings", "–", "no recording was held out"),
+    });
+    let floor = page.holdout.map(|fit| fit.noise_floor_n);
+    let note = match floor {
+        Some(floor) if newtons(floor) != newtons(page.estimation.noise_floor_n) => {
+            format!("what noise leaves of any model; {} on held-out recordings", newtons(floor))
+        }
+        _ => "what noise leaves of any model".to_owned(),
+    };
+    cards.push_str(&card("Noise floor", &newtons(page.estimation.noise_floor_n), &note));
+    let mut html = format!(
+        "<header class=\"{class}\">\n<h1>{}</h1>\n<p class=\"verdict\">{words}</p>\n<p class=\"statement\">{}</p>\n\
+         <div class=\"cards\">\n{cards}</div>\n",
+        escaped(&page.title),
+        escaped(&page.statement)
+    );
+    if !page.warnings.is_empty() {
+        let warnings = list(&page.warnings);
+        html.push_str(&format!("<div class=\"warnings\">\n<p>Know before use</p>\n{warnings}</div>\n"));
+    }
+    html.push_str("</header>\n");
+    html
+}
+
+/// Share of the excess over the noise floor, mean squares, that is gone afterwards; none where there was none.
+pub(super) fn share_explained(fit: PageFit) -> Option<f64> {
+    let excess = |rmse_n: f64| rmse_n * rmse_n - fit.noise_floor_n * fit.noise_floor_n;
+    let before = excess(fit.rmse_before_n);
+    (before > 0.0).then(|| (1.0 - excess(fit.rmse_after_n) / before).clamp(0.0, 1.0))
+}
+
+fn card_of_fit(label: &str, fit: PageFit, after: bool) -> String {
+    if !after {
+        return card(label, &newtons(fit.rmse_before_n), "residual of the base model, root mean square");
+    }
+    let figure = format!("{} → {}", newtons(fit.rmse_before_n), newtons(fit.rmse_after_n));
+    let note = match share_explained(fit) {
+        Some(share) => format!("residual; {} of the excess over the noise floor is gone", percent(share)),
+        None => "residual, root mean square".to_owned(),
+    };
+    card(label, &figure, &note)
+}
+
+fn card(label: &str, figure: &str, note: &str) -> String {
+    let (label, figure, note) = (escaped(label), escaped(figure), escaped(note));
+    format!(
+        "<div class=\"card\"><p class=\"label\">{label}</p><p class=\"figure\">{figure}</p>\
+         <p class=\"note\">{note}</p></div>\n"
+    )
+}

@@ -1,0 +1,177 @@
+//! Figure: one loop, measured and modelled, before and after.
+
+use super::PageCoordinate;
+use super::samples::{Samples, extent};
+use super::style::{AFTER, BEFORE};
+use crate::FigureError;
+use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, thin};
+
+/// Points of a line.
+const POINTS: usize = 1500;
+
+/// A stretch of a recording on which the effects tell.
+#[derive(Debug)]
+pub(super) struct Stretch<'a> {
+    samples: &'a Samples,
+    model_n: &'a [f64],
+    rows: std::ops::Range<usize>,
+}
+
+impl<'a> Stretch<'a> {
+    /// The cycle, of held-out recordings where there are any, whose mean square falls the most.
+    pub(super) fn most_telling(recordings: &'a [Samples]) -> Option<Self> {
+        let held_out = recordings.iter().any(|samples| samples.held_out && samples.model_n.is_some());
+        let mut best: Option<(f64, Self)> = None;
+        for samples in recordings.iter().filter(|samples| samples.held_out == held_out) {
+            let (Some(model_n), Some(after_n)) = (&samples.model_n, &samples.after_n) else { continue };
+            for rows in cycles(samples) {
+                let gain = rows.clone().map(|row| samples.before_n[row].powi(2) - after_n[row].powi(2)).sum::<f64>();
+                let gain = gain / rows.len() as f64;
+                if best.as_ref().is_none_or(|(most, _)| gain > *most) {
+                    best = Some((gain, Self { samples, model_n, rows }));
+                }
+            }
+        }
+        best.map(|(_, stretch)| stretch)
+    }
+
+    /// Where it lies, in words.
+    pub(super) fn words(&self) -> String {
+        let time_s = self.samples.column(PageCoordinate::Time);
+        let [from, to] = [time_s[self.rows.start], time_s[self.rows.end - 1]];
+        let held_out = if self.samples.held_out { ", held out" } else { "" };
+        format!("{}{held_out}, {}", self.samples.name, PageCoordinate::Time.interval(from, to))
+    }
+
+    /// The coordinate that the force is drawn over: contraction, or pressure where the muscle hardly moves.
+    fn coordinate(&self) -> PageCoordinate {
+        let (lowest, highest) = extent(self.column(PageCoordinate::Contraction).iter().copied());
+        if highest - lowest > 1.0 { PageCoordinate::Contraction } else { PageCoordinate::Pressure }
+    }
+
+    fn column(&self, coordinate: PageCoordinate) -> &[f64] {
+        &self.samples.column(coordinate)[self.rows.clone()]
+    }
+}
+
+/// Stretches of at least 50 samples: cycles, or sixths of a recording without.
+fn cycles(samples: &Samples) -> Vec<std::ops::Range<usize>> {
+    let cycle = samples.column(PageCoordinate::Cycle);
+    let mut stretches = Vec::new();
+    let mut start = 0;
+    for end in 1..=cycle.len() {
+        if end == cycle.len() || cycle[end] != cycle[start] {
+            stretches.push(start..end);
+            start = end;
+        }
+    }
+    stretches.retain(|rows| rows.len() >= 50);
+    if stretches.len() < 2 {
+        let n = samples.force_n.len();
+        stretches = (0..6).map(|part| part * n / 6..(part + 1) * n / 6).filter(|rows| rows.len() >= 2).collect();
+    }
+    stretches
+}
+
+/// Draws the loop as it is, and without its mean course.
+pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
+    let coordinate = stretch.coordinate();
+    let x = stretch.column(coordinate);
+    let rows = stretch.rows.clone();
+    let lines: [(&[f64], Color, f64); 3] = [
+        (&stretch.samples.force_n[rows.clone()], palette::SILVER, 1.6),
+        (&stretch.samples.base_n[rows.clone()], BEFORE, 2.0),
+        (&stretch.model_n[rows], AFTER, 2.0),
+    ];
+    let course = parabola(x, lines[0].0);
+    let without: Vec<Vec<f64>> = lines
+        .iter()
+        .map(|(force_n, _, _)| force_n.iter().zip(x).map(|(force_n, x)| force_n - course.at(*x)).collect())
+        .collect();
+    Canvas::document(1040, 400, "A loop before and after", |canvas, sheet| {
+        let [left, right] = sheet.inset(0.0, 28.0, 0.0, 0.0).columns([1.0, 1.0], 12.0);
+        let mut draw = |cell: Rect, title: &str, y_title: &str, lines: &[(&[f64], Color, f64)]| {
+            let (lowest, highest) = extent(lines.iter().flat_map(|(force_n, _, _)| force_n.iter().copied()));
+            let (from, to) = extent(x.iter().copied());
+            let x_axis = Axis::linear(coordinate.axis_title(), from, to, 6);
+            let panel = Panel::new(cell, x_axis, Axis::linear(y_title, lowest, highest, 6), 16.0);
+            panel.draw_frame(canvas);
+            for (force_n, color, width) in lines {
+                let kept = thin(force_n, POINTS);
+                panel.line(canvas, kept.into_iter().map(|row| (x[row], force_n[row])), *color, *width);
+            }
+            canvas.bold(title, (panel.frame.left, cell.top + 18.0), Anchor::Start, 14.0, palette::INK);
+        };
+        draw(left, "Force", "force (N)", &lines);
+        let without = [0, 1, 2].map(|line| (without[line].as_slice(), lines[line].1, lines[line].2));
+        draw(right, "The same, less the mean course of the measured force", "difference (N)", &without);
+        let keys = [
+            Key::new("measured", Mark::Line(1.6), palette::SILVER),
+            Key::new("base model", Mark::Line(2.0), BEFORE),
+            Key::new("with the named effects", Mark::Line(2.0), AFTER),
+        ];
+        legend(canvas, &keys, sheet.right - 16.0, 14.0);
+    })
+}
+
+/// `a + b u + c u²` with `u = (x - middle) / span`.
+struct Parabola {
+    middle: f64,
+    span: f64,
+    weights: [f64; 3],
+}
+
+impl Parabola {
+    fn at(&self, x: f64) -> f64 {
+        let u = (x - self.middle) / self.span;
+        self.weights[0] + u * (self.weights[1] + u * self.weights[2])
+    }
+}
+
+/// Least squares by Gram–Schmidt on 1, u, u²; a column without anything of its own gets no weight.
+fn parabola(x: &[f64], y: &[f64]) -> Parabola {
+    let (lowest, highest) = extent(x.iter().copied());
+    let (middle, span) = (0.5 * (lowest + highest), (0.5 * (highest - lowest)).max(1e-9));
+    let u: Vec<f64> = x.iter().map(|x| (x - middle) / span).collect();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    // Each column with what it is in terms of the powers of u.
+    let mut basis: Vec<(Vec<f64>, [f64; 3])> = Vec::new();
+    for power in 0..3 {
+        let mut column: Vec<f64> = u.iter().map(|u| u.powi(power as i32)).collect();
+        let mut terms = [0.0; 3];
+        terms[power] = 1.0;
+        for (earlier, earlier_terms) in &basis {
+            let share = dot(&column, earlier) / dot(earlier, earlier);
+            column.iter_mut().zip(earlier).for_each(|(value, earlier)| *value -= share * earlier);
+            terms.iter_mut().zip(earlier_terms).for_each(|(term, earlier)| *term -= share * earlier);
+        }
+        if dot(&column, &column) > 1e-9 * x.len() as f64 {
+            basis.push((column, terms));
+        }
+    }
+    let mut weights = [0.0; 3];
+    for (column, terms) in &basis {
+        let share = dot(column, y) / dot(column, column);
+        weights.iter_mut().zip(terms).for_each(|(weight, term)| *weight += share * term);
+    }
+    Parabola { middle, span, weights }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_found_again() {
+        let x: Vec<f64> = (0..50).map(|index| 3.0 + 0.1 * f64::from(index)).collect();
+        let y: Vec<f64> = x.iter().map(|x| 2.0 - x + 0.5 * x * x).collect();
+        let course = parabola(&x, &y);
+        assert!(x.iter().zip(&y).all(|(x, y)| (course.at(*x) - y).abs() < 1e-9));
+    }
+
+    #[test]
+    fn a_channel_that_stands_still_has_a_mean_course() {
+        let course = parabola(&[2.0; 4], &[1.0, 2.0, 3.0, 4.0]);
+        assert!((course.at(2.0) - 2.5).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,110 @@
+//! The page of a diagnosis: one self-contained HTML document that is read from top to bottom.
+//!
+//! | section            | says                                                                             |
+//! |--------------------|----------------------------------------------------------------------------------|
+//! | top                | verdict, statement, residuals before and after, noise floor                      |
+//! | mismatch           | whether there is one                                                             |
+//! | where              | regions; residual against each coordinate, over pressure and contraction, time   |
+//! | what               | effects with equation, parameters, evidence, rivals; everything that was weighed |
+//! | what it buys       | held-out recordings before and after; a loop before and after                    |
+//! | what is unknown    | what is left, and where; what cannot be decided; implausible parameters          |
+//! | what to record     | the recording that would tell more                                               |
+//! | what can be told   | which effects these recordings could tell apart at all                           |
+//! | appendix           | inputs with digests, options                                                     |
+//!
+//! The page loads nothing and runs nothing; it follows the reader's preference for light or dark, and prints.
+
+mod content;
+mod coordinate;
+mod ending;
+mod fit_bars;
+mod headline;
+mod html;
+mod loops;
+mod named;
+mod place;
+mod profiles;
+mod recording;
+mod residual_maps;
+mod samples;
+mod style;
+mod telling_apart;
+mod time_lines;
+
+pub use content::{
+    DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageEffect, PageEvidence, PageExperiment, PageFit,
+    PageImplausible, PageInput, PageIsolability, PageParameter, PageRegion, PageUnknown, PageVerdict,
+};
+pub use coordinate::PageCoordinate;
+pub use recording::PageRecording;
+
+use crate::FigureError;
+use crate::escape::escaped;
+use html::{figure, newtons, paragraph};
+use samples::Samples;
+
+/// Writes the page, as an HTML document.
+///
+/// # Errors
+/// [`FigureError`] if columns of a recording differ in length.
+pub fn diagnosis_page(page: &DiagnosisPage) -> Result<String, FigureError> {
+    let mut recordings = page.recordings.iter().map(Samples::new).collect::<Result<Vec<_>, _>>()?;
+    recordings.retain(|samples| !samples.force_n.is_empty());
+    let noise_n = page.estimation.noise_floor_n;
+    let sections = [
+        ("mismatch", "Is there a mismatch?", mismatch(page)?),
+        ("where", "Where do model and recordings differ?", place::place(page, &recordings)?),
+        ("what", "What was left out?", named::named(page)),
+        ("gain", "What does it buy?", ending::gain(page, &recordings)?),
+        ("unknown", "What is still unknown?", ending::unknown(page)),
+        ("next", "What to record next", ending::next(page.next_experiment.as_ref())),
+        ("apart", "What could these recordings tell apart at all?", {
+            telling_apart::telling_apart(page.isolability.as_ref(), noise_n)?
+        }),
+        ("appendix", "Appendix: how this came about", ending::appendix(&page.appendix)),
+    ];
+    let links: String = sections.iter().map(|(id, title, _)| format!("<a href=\"#{id}\">{title}</a>\n")).collect();
+    let body: String = sections
+        .iter()
+        .enumerate()
+        .map(|(index, (id, title, body))| {
+            let count = index + 1;
+            format!("<section id=\"{id}\">\n<h2><span class=\"count\">{count}</span>{title}</h2>\n{body}</section>\n")
+        })
+        .collect();
+    Ok(format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n\
+         <style>\n{}</style>\n</head>\n<body>\n<main>\n{}<nav>\n{links}</nav>\n{body}</main>\n</body>\n</html>\n",
+        escaped(&page.title),
+        style::style(),
+        headline::headline(page),
+    ))
+}
+
+/// Section: whether there is a mismatch.
+fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
+    let PageFit { rmse_before_n, noise_floor_n, .. } = page.estimation;
+    let factor = rmse_before_n / noise_floor_n;
+    let times = if factor.is_finite() {
+        format!(", {factor:.1} times the noise floor of {}", newtons(noise_floor_n))
+    } else {
+        String::new()
+    };
+    let verdict = match page.verdict {
+        PageVerdict::Consistent => {
+            "That is within what noise, the uncertainty of the parameters or the limit of what matters allow."
+        }
+        PageVerdict::Explained | PageVerdict::Ambiguous | PageVerdict::Unexplained => {
+            "More than noise and the uncertainty of the parameters allow."
+        }
+    };
+    let text =
+        format!("Refitted to these recordings, the base model leaves {}{times}. {verdict}", newtons(rmse_before_n));
+    let mut fits = vec![("estimation recordings", page.estimation)];
+    fits.extend(page.holdout.map(|fit| ("held-out recordings", fit)));
+    let svg = fit_bars::fit_bars("Residual before and after", &fits, !page.effects.is_empty())?;
+    let caption = "Residual, root mean square over samples whose direction of motion is settled. No model comes below \
+                   the noise floor but by fitting noise.";
+    Ok(paragraph(&text) + &figure(&svg, caption))
+}

@@ -1,0 +1,126 @@
+//! Section: which effects were left out of the model.
+
+use super::html::{equation, heading, newtons, paragraph, percent, remark, table};
+use super::{DiagnosisPage, PageAlternative, PageCandidate, PageEffect, PageEvidence, PageParameter, PageVerdict};
+use crate::escape::escaped;
+use crate::number::{engineering, engineering_with_stderr, probability, significant};
+use crate::{Table, number};
+
+pub(super) fn named(page: &DiagnosisPage) -> String {
+    let mut html = match page.effects.len() {
+        0 if page.verdict == PageVerdict::Consistent => paragraph("Nothing that matters in these recordings."),
+        0 => paragraph("No effect of the catalogue explains what is there."),
+        1 => paragraph("One effect that the model leaves out is named."),
+        n => paragraph(&format!("{n} effects that the model leaves out are named, in order of evidence.")),
+    };
+    html.extend(page.effects.iter().map(effect));
+    if !page.candidates.is_empty() {
+        html.push_str(&heading("What was weighed"));
+        html.push_str(&table(&candidates(&page.candidates)));
+        html.push_str(&remark(
+            "Each candidate alone, fitted jointly with the base model to all blocks but one and judged on that one, in \
+             turn. Evidence is the sum over held-out blocks of ln(mean square without / mean square with).",
+        ));
+    }
+    html
+}
+
+fn effect(effect: &PageEffect) -> String {
+    let (name, id) = (escaped(&capitalized(&effect.name)), escaped(&effect.id));
+    let mut html = format!("<article class=\"effect\">\n<h3>{name}<code class=\"id\">{id}</code></h3>\n");
+    html.push_str(&paragraph(&effect.summary));
+    html.push_str(&equation(&effect.equation));
+    if !effect.source.is_empty() {
+        html.push_str(&remark(&format!("Source: {}", effect.source)));
+    }
+    if !effect.parameters.is_empty() {
+        html.push_str("<h4>Parameters</h4>\n");
+        html.push_str(&table(&parameters(&effect.parameters)));
+    }
+    html.push_str("<h4>Why it is believed</h4>\n");
+    html.push_str(&paragraph(&evidence(&effect.evidence)));
+    if !effect.signature.is_empty() {
+        html.push_str(&format!("<p><strong>Signature:</strong> {}</p>\n", escaped(&effect.signature)));
+    }
+    html.push_str("<h4>What it is confused with</h4>\n");
+    if effect.alternatives.is_empty() {
+        html.push_str(&paragraph("These recordings tell it from every other effect of the catalogue."));
+    } else {
+        html.extend(effect.alternatives.iter().map(alternative));
+    }
+    if !effect.separating_test.is_empty() {
+        let test = escaped(&effect.separating_test);
+        html.push_str(&format!("<p><strong>Test that decides:</strong> {test}</p>\n"));
+    }
+    html.push_str("</article>\n");
+    html
+}
+
+fn parameters(parameters: &[PageParameter]) -> Table {
+    let any = |of: fn(&PageParameter) -> &str| parameters.iter().any(|parameter| !of(parameter).is_empty());
+    let (meaning, status) = (any(|parameter| &parameter.meaning), any(|parameter| &parameter.status));
+    let row = |name: &str, value: String, status_text: &str, meaning_text: &str| {
+        let mut cells = vec![name.to_owned(), value];
+        cells.extend(status.then(|| status_text.to_owned()));
+        cells.extend(meaning.then(|| meaning_text.to_owned()));
+        cells
+    };
+    let mut table = Table::new(row("parameter", "value".to_owned(), "status", "meaning"));
+    for parameter in parameters {
+        let value = match parameter.stderr {
+            Some(stderr) => engineering_with_stderr(parameter.value, stderr, &parameter.unit),
+            None => engineering(parameter.value, &parameter.unit, 3),
+        };
+        table.row(row(&parameter.name, value, &parameter.status, &parameter.meaning));
+    }
+    table
+}
+
+fn evidence(evidence: &PageEvidence) -> String {
+    let PageEvidence { log_ratio, rmse_without_n, rmse_with_n, blocks_improved, n_blocks, p_value } = *evidence;
+    format!(
+        "Fitted to all blocks of the recordings but one and judged on that one, in turn, it lowers the residual in \
+         {blocks_improved} of {n_blocks} blocks, from {} without it (everything else refitted) to {} with it. The \
+         evidence, Σ ln(mean square without / with), is {}; the probability of such an improvement by chance, \
+         corrected for the number of looks, is {}.",
+        newtons(rmse_without_n),
+        newtons(rmse_with_n),
+        significant(log_ratio, 3),
+        probability(p_value).trim_start_matches("< ").to_owned() + if p_value < 1e-15 { " or less" } else { "" }
+    )
+}
+
+fn alternative(alternative: &PageAlternative) -> String {
+    let PageAlternative { id, name, because, test } = alternative;
+    let name = if name.is_empty() { id.clone() } else { capitalized(name) };
+    let mut html = format!("<p><strong>{}</strong><code class=\"id\">{}</code>", escaped(&name), escaped(id));
+    if !because.is_empty() {
+        html.push_str(&format!("<br>\nAlike because {}.", escaped(because.trim_end_matches('.'))));
+    }
+    if !test.is_empty() {
+        html.push_str(&format!(" Told apart by {}.", escaped(test.trim_end_matches('.'))));
+    }
+    html.push_str("</p>\n");
+    html
+}
+
+fn candidates(candidates: &[PageCandidate]) -> Table {
+    let mut table = Table::new(["candidate", "explains", "evidence", "blocks improved", "p", "outcome"]);
+    for candidate in candidates {
+        let evidence = &candidate.evidence;
+        table.row([
+            if candidate.name.is_empty() { candidate.id.clone() } else { candidate.name.clone() },
+            percent(candidate.explains),
+            number::with_minus(format!("{:.1}", evidence.log_ratio)),
+            format!("{} of {}", evidence.blocks_improved, evidence.n_blocks),
+            probability(evidence.p_value),
+            candidate.outcome.clone(),
+        ]);
+    }
+    table
+}
+
+fn capitalized(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
+}

@@ -1,0 +1,109 @@
+//! The figure of an effect: what it does to a force, and where its residual sits.
+
+use crate::FigureError;
+use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, thin};
+
+/// Everything that the figure shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SignatureFigure {
+    /// Headline.
+    pub title: String,
+    /// One to three panels, side by side.
+    pub panels: Vec<SignaturePanel>,
+}
+
+/// One panel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SignaturePanel {
+    /// What is seen.
+    pub title: String,
+    /// Title of the horizontal axis, with unit.
+    pub x_label: String,
+    /// Title of the vertical axis, with unit.
+    pub y_label: String,
+    /// The lines.
+    pub series: Vec<SignatureSeries>,
+}
+
+/// One line of a panel, in the order of its points; where it leaps along the horizontal, it is interrupted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SignatureSeries {
+    /// Name in the legend.
+    pub name: String,
+    /// Horizontal values.
+    pub xs: Vec<f64>,
+    /// Vertical values, as many.
+    pub ys: Vec<f64>,
+}
+
+/// Colors of the lines, in turn: what is expected in ink, what the effect does in color.
+const COLORS: [Color; 5] = [palette::INK, palette::VERMILION, palette::BLUE, palette::GREEN, palette::PURPLE];
+/// Points of a line.
+const POINTS: usize = 1500;
+
+/// Draws the figure, as an SVG document 380 pixels high and 450 wide per panel.
+///
+/// # Errors
+/// [`FigureError`] if no line has two finite points, or if a line has not as many of both values.
+pub fn signature_figure(figure: &SignatureFigure) -> Result<String, FigureError> {
+    let series = || figure.panels.iter().flat_map(|panel| &panel.series);
+    for line in series() {
+        if line.ys.len() != line.xs.len() {
+            let (expected, found) = (line.xs.len(), line.ys.len());
+            return Err(FigureError::UnequalColumns { recording: line.name.clone(), column: "ys", expected, found });
+        }
+    }
+    if !series().any(|line| points(line).count() > 1) {
+        return Err(FigureError::NothingToDraw);
+    }
+    let n_panels = figure.panels.len().max(1);
+    Canvas::document(450 * n_panels as u32, 380, &figure.title, |canvas, sheet| {
+        canvas.bold(&figure.title, (18.0, 24.0), Anchor::Start, 17.0, palette::INK);
+        let width = sheet.width() / n_panels as f64;
+        for (index, panel) in figure.panels.iter().enumerate() {
+            let left = width * index as f64;
+            draw(canvas, Rect { left, right: left + width, top: 46.0, bottom: sheet.bottom - 4.0 }, panel);
+        }
+    })
+}
+
+fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
+    let extent = |of: fn((f64, f64)) -> f64| {
+        let values = panel.series.iter().flat_map(points).map(of);
+        values.fold((f64::NAN, f64::NAN), |(low, high): (f64, f64), value| (low.min(value), high.max(value)))
+    };
+    let (x, y) = (extent(|(x, _)| x), extent(|(_, y)| y));
+    // Below the title a row for the legend.
+    let axes = Panel::new(
+        cell.inset(0.0, 18.0, 0.0, 0.0),
+        Axis::linear(&*panel.x_label, x.0, x.1, 5),
+        Axis::linear(&*panel.y_label, y.0, y.1, 5),
+        18.0,
+    );
+    axes.draw_frame(canvas);
+    if y.0 < 0.0 && y.1 > 0.0 {
+        axes.line(canvas, [(axes.x.from, 0.0), (axes.x.to, 0.0)], palette::SILVER, 1.0);
+    }
+    let mut keys = Vec::new();
+    // A line by itself is what the effect does.
+    let colors = COLORS.iter().cycle().skip(usize::from(panel.series.len() == 1));
+    for (line, color) in panel.series.iter().zip(colors) {
+        // From reversal to reversal a coordinate may start anew: no line leads back.
+        let far = 0.2 * (axes.x.to - axes.x.from);
+        let values: Vec<(f64, f64)> = points(line).collect();
+        for run in values.chunk_by(|a, b| (a.0 - b.0).abs() < far) {
+            let ys: Vec<f64> = run.iter().map(|(_, y)| *y).collect();
+            axes.line(canvas, thin(&ys, POINTS).into_iter().map(|row| run[row]), *color, 1.9);
+        }
+        keys.push(Key::new(line.name.clone(), Mark::Line(1.9), *color));
+    }
+    canvas.bold(&panel.title, (axes.frame.left, cell.top + 14.0), Anchor::Start, 13.5, palette::INK);
+    if panel.series.len() > 1 {
+        legend(canvas, &keys, axes.frame.right, cell.top + 40.0);
+    }
+}
+
+/// Finite points of a line.
+fn points(line: &SignatureSeries) -> impl Iterator<Item = (f64, f64)> + '_ {
+    line.xs.iter().copied().zip(line.ys.iter().copied()).filter(|(x, y)| (x + y).is_finite())
+}
