@@ -97,5 +97,21 @@ fn main() {
     if let Some(left) = &found.left {
         println!("left unnamed: {:.3} N", left.held_out.mean_square().sqrt());
     }
-    println!("{:?}", begin.elapsed());
+    let names: Vec<&str> = found.best.state.guesses.iter().map(|guess| guess.id()).collect();
+    let firsts: Vec<String> = found
+        .first
+        .iter()
+        .take(4)
+        .map(|t| format!("{}:{:.1}/{:.2}", t.guess.id(), t.log_ratio, t.held_out.mean_square().sqrt()))
+        .collect();
+    println!(
+        "RESULT\t{}\t{:.3}\t{:.3}\t{:.3}\t{:.3}\t{}\t{:.2}",
+        names.join("+"),
+        found.base.held_out.mean_square().sqrt(),
+        found.best.held_out.mean_square().sqrt(),
+        found.floor_square.sqrt(),
+        model.fit.noise_floor_n,
+        firsts.join(" "),
+        begin.elapsed().as_secs_f64()
+    );
 }

@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Seen, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// Where a fit looks for the lock, in units of the largest contraction.
@@ -109,6 +110,7 @@ static PAGE: Page = Page {
     ],
     test: "slow isobaric strokes to the largest contraction at three pressures",
     protocol: "isobaric-triangles",
+    coordinate: Coordinate::Contraction,
 };
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Effect, Kind, Memory, Role, Seen, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// Delays that a fit tries first, either sign, in s.
@@ -101,6 +102,7 @@ static PAGE: Page = Page {
     ],
     test: "a tap that shows in force and length at zero pressure; an isometric pressure chirp from 0.05 to 10 Hz",
     protocol: "pressure-chirp",
+    coordinate: Coordinate::Speed,
 };
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::{Kinematics, Muscle};
 
 /// The effect.
@@ -96,6 +97,7 @@ static PAGE: Page = Page {
     ],
     test: "photograph the muscle under pressure at several lengths; two muscles of different length with the same fittings",
     protocol: "isobaric-triangles",
+    coordinate: Coordinate::Contraction,
 };
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// `s_ref`, in m: some thousand cycles of 50 mm.
@@ -106,6 +107,7 @@ static PAGE: Page = Page {
     ],
     test: "three hundred cycles at two pressures in turn, with a vented and slack pause before and after",
     protocol: "endurance",
+    coordinate: Coordinate::Time,
 };
 
 #[cfg(test)]

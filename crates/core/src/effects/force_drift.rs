@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -98,6 +99,7 @@ static PAGE: Page = Page {
     ],
     test: "ten minutes with the muscle vented and slack, before and after the recordings",
     protocol: "null",
+    coordinate: Coordinate::Time,
 };
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Seen, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -88,6 +89,7 @@ static PAGE: Page = Page {
     ],
     test: "vented and slack before and after the recording, and repeat it: a step does not come back",
     protocol: "null",
+    coordinate: Coordinate::Time,
 };
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -80,6 +81,7 @@ static PAGE: Page = Page {
     ],
     test: "isobaric length chirp from 0.05 to 8 Hz at two pressures; or the fixture without the muscle",
     protocol: "length-chirp",
+    coordinate: Coordinate::Speed,
 };
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -86,6 +87,7 @@ static PAGE: Page = Page {
     ],
     test: "pressure triangles under several constant loads: the width of the loop follows the load",
     protocol: "isotonic",
+    coordinate: Coordinate::Force,
 };
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -102,6 +103,7 @@ static PAGE: Page = Page {
     ],
     test: "a staircase of largest contractions of 5, 10, 15 and 20 %, three cycles each; the staircase again; rest; again",
     protocol: "run-in",
+    coordinate: Coordinate::Cycle,
 };
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! What a person should know of an effect.
 
+use crate::artifact::diagnosis::Coordinate;
+
 /// The page of an effect in the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Page {
@@ -25,6 +27,8 @@ pub struct Page {
     pub test: &'static str,
     /// Protocol of the virtual bench that shows it best, and that `--next-experiment` asks for.
     pub protocol: &'static str,
+    /// Coordinate over which it is concentrated.
+    pub coordinate: Coordinate,
 }
 
 /// One symbol of an equation.

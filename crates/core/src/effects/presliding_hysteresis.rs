@@ -7,6 +7,7 @@
 use super::page::{Confusion, Page, Symbol};
 use super::slip::Slip;
 use super::{Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -94,4 +95,5 @@ static PAGE: Page = Page {
     ],
     test: "nested minor loops of 10, 5, 2 and 1 mm at constant pressure, at two speeds",
     protocol: "minor-loops",
+    coordinate: Coordinate::TravelSinceReversal,
 };

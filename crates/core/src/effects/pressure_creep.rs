@@ -7,6 +7,7 @@
 use super::page::{Confusion, Page, Symbol};
 use super::prony::Overstress;
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -88,6 +89,7 @@ static PAGE: Page = Page {
     ],
     test: "isometric steps of the pressure up and down, with holds of a minute, and the valve closed",
     protocol: "pressure-steps",
+    coordinate: Coordinate::TimeSinceLastMove,
 };
 
 #[cfg(test)]

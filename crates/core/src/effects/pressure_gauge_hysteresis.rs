@@ -7,6 +7,7 @@
 use super::page::{Confusion, Page, Symbol};
 use super::slip::Slip;
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -98,6 +99,7 @@ static PAGE: Page = Page {
     ],
     test: "slow isometric ramps up and down at two rates; a second gauge of another make in parallel",
     protocol: "isometric-ramps",
+    coordinate: Coordinate::TravelSinceReversal,
 };
 
 #[cfg(test)]

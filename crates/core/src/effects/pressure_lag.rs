@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -87,4 +88,5 @@ static PAGE: Page = Page {
     ],
     test: "isometric pressure chirp from 0.05 to 10 Hz",
     protocol: "pressure-chirp",
+    coordinate: Coordinate::TimeSinceLastMove,
 };

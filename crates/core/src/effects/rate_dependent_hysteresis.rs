@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -90,6 +91,7 @@ static PAGE: Page = Page {
     ],
     test: "isobaric triangles at five speeds from 0.5 to 50 mm/s and two pressures",
     protocol: "rate-ladder",
+    coordinate: Coordinate::Speed,
 };
 
 #[cfg(test)]

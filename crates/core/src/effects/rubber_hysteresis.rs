@@ -7,6 +7,7 @@
 use super::page::{Confusion, Page, Symbol};
 use super::slip::Slip;
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -96,6 +97,7 @@ static PAGE: Page = Page {
     ],
     test: "minor loops of 10, 5, 2 and 1 mm at low and at high pressure, with holds of ten seconds at the reversals",
     protocol: "minor-loops",
+    coordinate: Coordinate::TravelSinceReversal,
 };
 
 #[cfg(test)]

@@ -9,6 +9,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -95,6 +96,7 @@ static PAGE: Page = Page {
     ],
     test: "a rod in the place of the muscle, pulled from 0 to 500 N while the length is recorded",
     protocol: "isometric-ramps",
+    coordinate: Coordinate::Force,
 };
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Effect, Kind, Memory, Role, Seen, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// Lowest and highest floor, in N: what is hung on the cell, with its tare.
@@ -86,6 +87,7 @@ static PAGE: Page = Page {
     ],
     test: "vent the muscle at every length and watch for a force that stays flat; keep a preload and it is gone",
     protocol: "isometric-ramps",
+    coordinate: Coordinate::Force,
 };
 
 #[cfg(test)]

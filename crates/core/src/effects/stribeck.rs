@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -95,6 +96,7 @@ static PAGE: Page = Page {
     ],
     test: "isobaric triangles at five speeds from 0.5 to 50 mm/s: the width of the loop falls with the speed",
     protocol: "rate-ladder",
+    coordinate: Coordinate::Speed,
 };
 
 #[cfg(test)]

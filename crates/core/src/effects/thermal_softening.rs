@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// `P_ref`, in W per unit of `f'`: 1 W of friction where `f'` is 1e-3.
@@ -117,6 +118,7 @@ static PAGE: Page = Page {
     test: "twenty minutes of cycling, then half an hour of rest with a probing cycle every five minutes, temperature \
            logged",
     protocol: "endurance",
+    coordinate: Coordinate::Time,
 };
 
 #[cfg(test)]

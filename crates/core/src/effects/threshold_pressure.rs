@@ -6,6 +6,7 @@
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// `w`: over what pressure the bladder comes to lie on the braid, in Pa.
@@ -96,6 +97,7 @@ static PAGE: Page = Page {
     ],
     test: "isometric ramps from a vented muscle at five lengths, 10 kPa/s below 120 kPa; the gauge's zero while vented",
     protocol: "isometric-ramps",
+    coordinate: Coordinate::Pressure,
 };
 
 #[cfg(test)]

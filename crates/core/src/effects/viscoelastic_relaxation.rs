@@ -7,6 +7,7 @@
 use super::page::{Confusion, Page, Symbol};
 use super::prony::Overstress;
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -91,6 +92,7 @@ static PAGE: Page = Page {
     ],
     test: "isobaric steps of the length up and down, with holds of a minute and one of half an hour",
     protocol: "length-steps",
+    coordinate: Coordinate::TimeSinceLastMove,
 };
 
 #[cfg(test)]

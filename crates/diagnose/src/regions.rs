@@ -1,0 +1,109 @@
+//! Where a mismatch lies: intervals of a coordinate.
+
+use pam_core::artifact::diagnosis::{Coordinate, Region};
+
+use crate::coordinates::Coordinates;
+use crate::state::Setting;
+
+/// Intervals that a coordinate is divided into.
+const BINS: usize = 24;
+/// An interval belongs to a region as long as its density is at least this share of the highest.
+const EDGE: f64 = 0.2;
+
+/// The interval of `coordinate` in which the mean of `excess` (in N² at every instant) is concentrated; none where there is
+/// no excess. Time is looked at one recording after the other.
+pub fn concentrated(
+    setting: &Setting<'_>,
+    coordinates: &Coordinates,
+    coordinate: Coordinate,
+    excess: &[f64],
+    p_value: f64,
+    paths: &[String],
+) -> Option<Region> {
+    let values = coordinates.of_kind(coordinate);
+    let counted = &setting.track.counted;
+    let all = 0..setting.track.n();
+    let (within, recording) = if coordinate == Coordinate::Time {
+        let sums: Vec<f64> =
+            setting.track.recordings.iter().map(|range| sum(range.clone(), counted, excess)).collect();
+        let (index, _) = sums.iter().enumerate().max_by(|left, right| left.1.total_cmp(right.1))?;
+        // In one recording or in all alike: an event stays where it happened.
+        (setting.track.recordings[index].clone(), Some(index))
+    } else {
+        (all.clone(), None)
+    };
+    let mut here: Vec<usize> = within.filter(|&at| counted[at] && values[at].is_finite()).collect();
+    if here.len() < 10 * BINS {
+        return None;
+    }
+    here.sort_by(|&left, &right| values[left].total_cmp(&values[right]));
+    let (low, high) = (values[here[here.len() / 500]], values[here[here.len() - 1 - here.len() / 500]]);
+    if high <= low {
+        return None;
+    }
+    let edges = edges(coordinate, low, high);
+    let mut sums = vec![0.0; edges.len() - 1];
+    let mut counts = vec![0.0; edges.len() - 1];
+    for &at in &here {
+        let bin = edges.partition_point(|&edge| edge <= values[at]).clamp(1, sums.len()) - 1;
+        sums[bin] += excess[at];
+        counts[bin] += 1.0;
+    }
+    let fewest = 0.002 * here.len() as f64;
+    let density: Vec<f64> =
+        sums.iter().zip(&counts).map(|(sum, count)| if *count >= fewest { (sum / count).max(0.0) } else { 0.0 }).collect();
+    let (peak, &highest) = density.iter().enumerate().max_by(|left, right| left.1.total_cmp(right.1))?;
+    if highest <= 0.0 {
+        return None;
+    }
+    let inside = |bin: usize| density[bin] >= EDGE * highest || counts[bin] < fewest;
+    let mut first = peak;
+    while first > 0 && inside(first - 1) {
+        first -= 1;
+    }
+    let mut last = peak;
+    while last + 1 < density.len() && inside(last + 1) {
+        last += 1;
+    }
+    // Empty intervals at the rim belong to nobody.
+    while first < peak && counts[first] < fewest {
+        first += 1;
+    }
+    while last > peak && counts[last] < fewest {
+        last -= 1;
+    }
+    let total = sum(all, counted, excess);
+    Some(Region {
+        coordinate,
+        from: edges[first],
+        to: edges[last + 1],
+        unit: coordinate.unit().to_owned(),
+        share_of_excess: if total > 0.0 {
+            (sums[first..=last].iter().sum::<f64>() / total).clamp(0.0, 1.0)
+        } else {
+            0.0
+        },
+        p_value,
+        recording: recording.and_then(|index| paths.get(index).cloned()),
+    })
+}
+
+fn sum(range: std::ops::Range<usize>, counted: &[bool], excess: &[f64]) -> f64 {
+    range.filter(|&at| counted[at]).map(|at| excess[at]).sum()
+}
+
+/// Borders of the intervals: evenly spaced; in proportion for what spans decades.
+fn edges(coordinate: Coordinate, low: f64, high: f64) -> Vec<f64> {
+    let skewed =
+        matches!(coordinate, Coordinate::Speed | Coordinate::TravelSinceReversal | Coordinate::TimeSinceLastMove);
+    let share = |index: usize| index as f64 / BINS as f64;
+    if skewed {
+        let floor = high * 3e-3;
+        let mut edges: Vec<f64> =
+            (0..=BINS).map(|index| floor * (high / floor).powf(share(index))).collect();
+        edges[0] = low.min(floor);
+        edges
+    } else {
+        (0..=BINS).map(|index| low + share(index) * (high - low)).collect()
+    }
+}
