@@ -97,6 +97,10 @@ fn main() {
     if let Some(left) = &found.left {
         println!("left unnamed: {:.3} N", left.held_out.mean_square().sqrt());
     }
+    let sizes = pam_diagnosis::verdict::Sizes::of(&found, &limits);
+    let verdict = pam_diagnosis::verdict::verdict(&found, &sizes);
+    let alternatives: Vec<Vec<&str>> =
+        (0..found.taken.len()).map(|i| pam_diagnosis::verdict::alternatives(&found, i)).collect();
     let names: Vec<&str> = found.best.state.guesses.iter().map(|guess| guess.id()).collect();
     let firsts: Vec<String> = found
         .first
@@ -105,13 +109,19 @@ fn main() {
         .map(|t| format!("{}:{:.1}/{:.2}", t.guess.id(), t.log_ratio, t.held_out.mean_square().sqrt()))
         .collect();
     println!(
-        "RESULT\t{}\t{:.3}\t{:.3}\t{:.3}\t{:.3}\t{}\t{:.2}",
+        "RESULT\t{}\t{:.3}\t{:.3}\t{:.3}\t{:.3}\t{}\t{:.2}\t{:?}\t{:.2}\t{:.2}\t{:.2}\t{:.2}\t{:?}",
         names.join("+"),
         found.base.held_out.mean_square().sqrt(),
         found.best.held_out.mean_square().sqrt(),
         found.floor_square.sqrt(),
         model.fit.noise_floor_n,
         firsts.join(" "),
-        begin.elapsed().as_secs_f64()
+        begin.elapsed().as_secs_f64(),
+        verdict,
+        sizes.floor_n,
+        sizes.mismatch_n,
+        sizes.left_n,
+        sizes.share_left(),
+        alternatives
     );
 }

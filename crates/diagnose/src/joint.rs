@@ -97,13 +97,14 @@ impl Joint<'_> {
         self.fit(rows, start, &|_| true)
     }
 
+    /// Fits that each leave one fold out.
+    pub fn fold_fits(&self, rows: &Extended<'_>, start: &[f64], fold_of_block: &[usize]) -> Option<Vec<JointFit>> {
+        (0..FOLDS).into_par_iter().map(|fold| self.fit(rows, start, &|block| fold_of_block[block] != fold)).collect()
+    }
+
     /// Holds each fold out in turn.
     pub fn hold_out(&self, rows: &Extended<'_>, start: &[f64], fold_of_block: &[usize]) -> Option<HeldOut> {
-        let folds: Option<Vec<JointFit>> = (0..FOLDS)
-            .into_par_iter()
-            .map(|fold| self.fit(rows, start, &|block| fold_of_block[block] != fold))
-            .collect();
-        let folds = folds?;
+        let folds = self.fold_fits(rows, start, fold_of_block)?;
         let counts = rows.counts().to_vec();
         let blocks = (0..rows.n_blocks())
             .map(|block| rows.square_sum(block, &folds[fold_of_block[block]].weights) / counts[block].max(1.0))

@@ -24,8 +24,7 @@ pub fn concentrated(
     let counted = &setting.track.counted;
     let all = 0..setting.track.n();
     let (within, recording) = if coordinate == Coordinate::Time {
-        let sums: Vec<f64> =
-            setting.track.recordings.iter().map(|range| sum(range.clone(), counted, excess)).collect();
+        let sums: Vec<f64> = setting.track.recordings.iter().map(|range| sum(range.clone(), counted, excess)).collect();
         let (index, _) = sums.iter().enumerate().max_by(|left, right| left.1.total_cmp(right.1))?;
         // In one recording or in all alike: an event stays where it happened.
         (setting.track.recordings[index].clone(), Some(index))
@@ -50,8 +49,11 @@ pub fn concentrated(
         counts[bin] += 1.0;
     }
     let fewest = 0.002 * here.len() as f64;
-    let density: Vec<f64> =
-        sums.iter().zip(&counts).map(|(sum, count)| if *count >= fewest { (sum / count).max(0.0) } else { 0.0 }).collect();
+    let density: Vec<f64> = sums
+        .iter()
+        .zip(&counts)
+        .map(|(sum, count)| if *count >= fewest { (sum / count).max(0.0) } else { 0.0 })
+        .collect();
     let (peak, &highest) = density.iter().enumerate().max_by(|left, right| left.1.total_cmp(right.1))?;
     if highest <= 0.0 {
         return None;
@@ -99,8 +101,7 @@ fn edges(coordinate: Coordinate, low: f64, high: f64) -> Vec<f64> {
     let share = |index: usize| index as f64 / BINS as f64;
     if skewed {
         let floor = high * 3e-3;
-        let mut edges: Vec<f64> =
-            (0..=BINS).map(|index| floor * (high / floor).powf(share(index))).collect();
+        let mut edges: Vec<f64> = (0..=BINS).map(|index| floor * (high / floor).powf(share(index))).collect();
         edges[0] = low.min(floor);
         edges
     } else {

@@ -137,6 +137,13 @@ impl Setting<'_> {
         (columns, forces)
     }
 
+    /// Fits of `state` that each leave one fold out.
+    pub fn fold_fits(&self, state: &State) -> Option<Vec<JointFit>> {
+        let limits = ranges(&state.guesses);
+        let rows = state.normal.extend(self.track, &[], 0);
+        self.joint(&limits).fold_fits(&rows, &state.fit.x, &self.track.fold_of_block)
+    }
+
     /// Mean squares of `state` over held-out blocks.
     pub fn hold_out(&self, state: &State) -> Option<HeldOut> {
         let limits = ranges(&state.guesses);

@@ -1,0 +1,156 @@
+//! How well the parameters of a hypothesis are known.
+
+use nalgebra::DMatrix;
+use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
+use pam_identification::search_space::SearchSpace;
+
+use crate::joint::JointFit;
+use crate::state::{Setting, State};
+use crate::track::FOLDS;
+
+/// Standard errors by the jackknife over folds: base coordinates (in the unit box), then amplitudes (SI).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Uncertainty {
+    /// Of each free base parameter, SI.
+    pub base: Vec<f64>,
+    /// Of each amplitude, SI.
+    pub amplitudes: Vec<f64>,
+    /// Correlation between the base parameters.
+    pub correlation: DMatrix<f64>,
+}
+
+impl Uncertainty {
+    /// From the fits that each leave one fold out.
+    pub fn of(folds: &[JointFit], space: &SearchSpace) -> Self {
+        let n_free = space.free.len();
+        let n = folds.len() as f64;
+        let n_all = folds.first().map_or(0, |fit| fit.x.len());
+        let mean: Vec<f64> = (0..n_all).map(|index| folds.iter().map(|fit| fit.x[index]).sum::<f64>() / n).collect();
+        let mut covariance = DMatrix::<f64>::zeros(n_all, n_all);
+        for fit in folds {
+            for row in 0..n_all {
+                for column in 0..n_all {
+                    covariance[(row, column)] +=
+                        (n - 1.0) / n * (fit.x[row] - mean[row]) * (fit.x[column] - mean[column]);
+                }
+            }
+        }
+        let stderr = |index: usize| covariance[(index, index)].sqrt();
+        let correlation = DMatrix::from_fn(n_free, n_free, |row, column| {
+            let scale = stderr(row) * stderr(column);
+            if row == column {
+                1.0
+            } else if scale > 0.0 {
+                covariance[(row, column)] / scale
+            } else {
+                0.0
+            }
+        });
+        let n_amplitudes = folds.first().map_or(0, |fit| fit.amplitudes.len());
+        let amplitudes = (0..n_amplitudes)
+            .map(|index| {
+                let mean = folds.iter().map(|fit| fit.amplitudes[index]).sum::<f64>() / n;
+                let squares: f64 = folds.iter().map(|fit| (fit.amplitudes[index] - mean).powi(2)).sum();
+                ((n - 1.0) / n * squares).sqrt()
+            })
+            .collect();
+        let base = (0..n_free).map(|index| stderr(index) * (space.ranges[index].1 - space.ranges[index].0)).collect();
+        Self { base, amplitudes, correlation }
+    }
+}
+
+/// Standard error of each shape parameter of effect `index`, from the curvature of the mean square around it; none where the
+/// data do not bend it.
+pub fn shape_errors(setting: &Setting<'_>, state: &State, index: usize, correlated: f64) -> Vec<Option<f64>> {
+    let guess = &state.guesses[index];
+    let rows = setting.track.n_counted() as f64 / correlated;
+    let cost = |shape: &[f64]| -> Option<f64> {
+        let mut guesses = state.guesses.clone();
+        guesses[index].shape = shape.to_vec();
+        setting.fit(guesses, &state.fit.x[..setting.space.free.len()], &state.model).map(|state| state.fit.mean_square)
+    };
+    guess
+        .effect
+        .shape()
+        .iter()
+        .enumerate()
+        .map(|(parameter, shape)| {
+            let here = state.fit.mean_square;
+            let step = (0.05 * guess.shape[parameter].abs()).max(1e-3 * (shape.range.1 - shape.range.0).min(1.0));
+            let at = |value: f64| {
+                let mut moved = guess.shape.clone();
+                moved[parameter] = value.clamp(shape.range.0, shape.range.1);
+                cost(&moved)
+            };
+            let (below, above) = (at(guess.shape[parameter] - step)?, at(guess.shape[parameter] + step)?);
+            let bend = (below + above - 2.0 * here) / (step * step);
+            (bend > 0.0).then(|| (2.0 * here / (rows * bend)).sqrt())
+        })
+        .collect()
+}
+
+/// Instants that share their residual with one: `1 + 2 Σ ρ`, summed until the correlation dies away.
+pub fn correlated_instants(setting: &Setting<'_>, residuals_n: &[f64]) -> f64 {
+    let mut sums = vec![0.0; 200];
+    let mut counts = vec![0.0; 200];
+    for range in &setting.track.recordings {
+        for at in range.clone().step_by(3).filter(|&at| setting.track.counted[at]) {
+            for lag in 0..sums.len() {
+                if at + lag < range.end && setting.track.counted[at + lag] {
+                    sums[lag] += residuals_n[at] * residuals_n[at + lag];
+                    counts[lag] += 1.0;
+                }
+            }
+        }
+    }
+    let at = |lag: usize| if counts[lag] > 0.0 { sums[lag] / counts[lag] } else { 0.0 };
+    let variance = at(0);
+    let mut total = 1.0;
+    for lag in 1..sums.len() {
+        let correlation = at(lag) / variance.max(f64::MIN_POSITIVE);
+        if correlation < 0.05 {
+            break;
+        }
+        total += 2.0 * correlation;
+    }
+    total
+}
+
+/// Entries of an artifact for effect `index`: shapes, then amplitudes from position `first` on.
+pub fn entries(
+    state: &State,
+    index: usize,
+    first: usize,
+    shape_errors: &[Option<f64>],
+    uncertainty: &Uncertainty,
+) -> Vec<ParameterEntry> {
+    let guess = &state.guesses[index];
+    let entry = |name: &str, unit: &str, value: f64, range: (f64, f64), stderr: Option<f64>| {
+        let rim = 1e-6 * (range.1 - range.0);
+        ParameterEntry {
+            name: name.to_owned(),
+            value,
+            unit: unit.to_owned(),
+            stderr,
+            status: if value <= range.0 + rim || value >= range.1 - rim {
+                ParameterStatus::AtBound
+            } else {
+                ParameterStatus::Fitted
+            },
+        }
+    };
+    let shapes = guess
+        .effect
+        .shape()
+        .iter()
+        .zip(&guess.shape)
+        .zip(shape_errors)
+        .map(|((shape, &value), &stderr)| entry(shape.name, shape.unit, value, shape.range, stderr));
+    let amplitudes = guess.amplitudes().iter().enumerate().map(|(offset, amplitude)| {
+        let at = first + offset;
+        let value = state.fit.amplitudes[at].clamp(amplitude.range.0, amplitude.range.1);
+        entry(amplitude.name, amplitude.unit, value, amplitude.range, Some(uncertainty.amplitudes[at]))
+    });
+    debug_assert!(FOLDS > 1, "a jackknife needs folds");
+    shapes.chain(amplitudes).collect()
+}

@@ -1,0 +1,76 @@
+//! What is to be believed of a search.
+
+use pam_core::artifact::diagnosis::Verdict;
+
+use crate::search::{Found, Limits, Taken};
+
+/// Sizes that the verdict rests on, root mean square over held-out blocks, in N.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sizes {
+    /// What noise leaves of any model at the full rate.
+    pub floor_n: f64,
+    /// What the base model leaves beyond what any model leaves.
+    pub mismatch_n: f64,
+    /// What base and effects leave beyond what smooth functions on top of them leave.
+    pub left_n: f64,
+    /// Beyond which a mismatch matters.
+    pub matters_n: f64,
+}
+
+/// Share of the mismatch (mean squares) that may be left of an explanation.
+const MOST_LEFT: f64 = 0.3;
+/// A rival that reaches this share of the evidence cannot be told from what was named.
+const RIVAL: f64 = 0.85;
+
+impl Sizes {
+    /// Of a search under its limits.
+    pub fn of(found: &Found, limits: &Limits) -> Self {
+        let floor_n = (found.floor_square + limits.sensor_floor_n.powi(2)).sqrt();
+        let excess = |square: f64, below: f64| (square - below).max(0.0).sqrt();
+        let best = found.best.held_out.mean_square();
+        let left_n = found.left.as_ref().map_or(0.0, |left| excess(best, left.held_out.mean_square()));
+        Self {
+            floor_n,
+            mismatch_n: excess(found.base.held_out.mean_square(), found.floor_square),
+            left_n,
+            // The root mean square is then half as much again as the noise alone.
+            matters_n: limits.matters_above_n.unwrap_or(floor_n * (1.5_f64.powi(2) - 1.0).sqrt()),
+        }
+    }
+
+    /// Share of the mismatch that is left, in mean squares.
+    pub fn share_left(&self) -> f64 {
+        if self.mismatch_n > 0.0 { (self.left_n / self.mismatch_n).powi(2).min(1.0) } else { 0.0 }
+    }
+}
+
+/// The verdict.
+pub fn verdict(found: &Found, sizes: &Sizes) -> Verdict {
+    let named = !found.best.state.guesses.is_empty();
+    let structured = sizes.left_n > 0.5 * sizes.matters_n && sizes.share_left() > MOST_LEFT;
+    if !named {
+        return if sizes.mismatch_n > sizes.matters_n { Verdict::Unexplained } else { Verdict::Consistent };
+    }
+    if structured {
+        Verdict::Unexplained
+    } else if found.taken.iter().enumerate().any(|(index, _)| !alternatives(found, index).is_empty()) {
+        Verdict::Ambiguous
+    } else {
+        Verdict::Explained
+    }
+}
+
+/// Ids of the effects that cannot be told from effect `index`.
+pub fn alternatives(found: &Found, index: usize) -> Vec<&'static str> {
+    let Some(Taken { without, rivals }) = found.taken.get(index) else { return Vec::new() };
+    let own = without.log_ratio(&found.best.held_out);
+    let gained = without.mean_square() - found.best.held_out.mean_square();
+    rivals
+        .iter()
+        .filter(|rival| rival.guess.id() != found.best.state.guesses[index].id())
+        .filter(|rival| {
+            rival.log_ratio > RIVAL * own && without.mean_square() - rival.held_out.mean_square() > RIVAL * gained
+        })
+        .map(|rival| rival.guess.id())
+        .collect()
+}
