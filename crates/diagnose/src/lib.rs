@@ -4,7 +4,10 @@
 //! and [`joint`] fit base and effects together and judge them on held-out blocks.
 
 pub mod base;
+mod check;
 pub mod coordinates;
+pub mod diagnose;
+pub mod error;
 pub mod hypothesis;
 pub mod joint;
 pub mod normal;
@@ -19,3 +22,4 @@ pub mod track;
 pub mod trial;
 pub mod uncertainty;
 pub mod verdict;
+pub mod words;

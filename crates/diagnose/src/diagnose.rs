@@ -1,0 +1,356 @@
+//! All of it in order: recordings and a model in, a diagnosis out.
+
+use pam_core::artifact::ModelArtifact;
+use pam_core::artifact::diagnosis::{
+    Candidate, Coordinate, DiagnoseConfig, Evidence, Implausible, NamedEffect, Region, Verdict,
+};
+use pam_core::artifact::model::EffectEntry;
+use pam_core::effects::{AugmentedModel, Term};
+use pam_core::force::ForceModel;
+use pam_core::force::columns::ForceColumns;
+use pam_core::recording::Recording;
+use pam_identification::prepare::Prepared;
+
+use crate::base;
+use crate::check;
+use crate::error::DiagnoseError;
+use crate::joint::HeldOut;
+use crate::regions::concentrated;
+use crate::search::{Found, Limits, chance, search};
+use crate::state::Setting;
+use crate::structure::Remainder;
+use crate::track::Track;
+use crate::uncertainty::{Uncertainty, correlated_instants, entries, shape_errors};
+use crate::verdict::{Sizes, alternatives, verdict};
+use crate::words;
+
+/// What to diagnose.
+#[derive(Debug)]
+pub struct Request {
+    /// Recordings that effects are fitted to.
+    pub estimation: Vec<Recording>,
+    /// Recordings that nothing is fitted to.
+    pub holdout: Vec<Recording>,
+    /// The model that is in question; effects that it has already are not looked for again.
+    pub model: ModelArtifact,
+    /// Options.
+    pub config: DiagnoseConfig,
+    /// Go on where an instrument fault is suspected.
+    pub accept_implausible: bool,
+}
+
+/// What was found.
+#[derive(Debug)]
+pub struct Diagnosis {
+    /// The model that was in question.
+    pub model: ModelArtifact,
+    /// Options.
+    pub config: DiagnoseConfig,
+    /// What is to be believed.
+    pub verdict: Verdict,
+    /// The verdict in one sentence.
+    pub statement: String,
+    /// Where model and recordings differ.
+    pub regions: Vec<Region>,
+    /// Effects in order of evidence.
+    pub effects: Vec<NamedEffect>,
+    /// Share of the mismatch that is left.
+    pub unexplained_share: f64,
+    /// Where structure is left.
+    pub unexplained: Vec<Region>,
+    /// Base parameters that no such muscle has.
+    pub implausible: Vec<Implausible>,
+    /// Everything that was weighed.
+    pub candidates: Vec<Candidate>,
+    /// Sizes that the verdict rests on.
+    pub sizes: Sizes,
+    /// Base model refitted to the estimation recordings.
+    pub base: ForceModel,
+    /// Base model and effects.
+    pub augmented: AugmentedModel,
+    /// Effects as a model artifact has them.
+    pub entries: Vec<EffectEntry>,
+    /// Standard errors of base and amplitudes.
+    pub uncertainty: Uncertainty,
+    /// What was free in the base.
+    pub free: Vec<&'static str>,
+    /// Which free base parameters press against their range.
+    pub at_bound: Vec<bool>,
+    /// Estimation recordings.
+    pub estimation: Vec<Prepared>,
+    /// Held-out recordings.
+    pub holdout: Vec<Prepared>,
+}
+
+/// Effects that may be named unless told otherwise.
+pub const MAX_EFFECTS: usize = 4;
+
+/// Checks the recordings without fitting anything.
+///
+/// # Errors
+/// [`DiagnoseError`] names the recording and the remedy.
+pub fn check(request: Request) -> Result<(), DiagnoseError> {
+    let (estimation, _) =
+        check::prepare(request.estimation, request.holdout, &request.model, request.accept_implausible)?;
+    let track = Track::of(&estimation, request.model.direction, request.model.geometry.rest_length_m)?;
+    check::long_enough(&track, &estimation)
+}
+
+/// Diagnoses.
+///
+/// # Errors
+/// [`DiagnoseError`] names the recording and the remedy.
+pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
+    let Request { estimation, holdout, model, config, accept_implausible } = request;
+    let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
+    let track = Track::of(&estimation, model.direction, model.geometry.rest_length_m)?;
+    check::long_enough(&track, &estimation)?;
+    let largest_n_per_m =
+        estimation.iter().map(|prepared| prepared.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
+    let columns = ForceColumns::new(&model.geometry, model.strand_modulus_pa, model.form, largest_n_per_m);
+    let space = base::search_space(&model, &columns);
+    let setting = Setting {
+        track: &track,
+        columns: &columns,
+        space: &space,
+        muscle: &model.geometry,
+        strand_modulus_pa: model.strand_modulus_pa,
+    };
+    let limits = Limits {
+        max_effects: config.max_effects,
+        excluded: config.excluded.clone(),
+        matters_above_n: config.matters_above_n,
+        sensor_floor_n: model.fit.noise_floor_n,
+    };
+    let undetermined = || DiagnoseError::Undetermined { path: estimation[0].recording.path.clone() };
+    let start = base::coordinates(&model, &space);
+    let found = search(&setting, &start, &model.force_model(), &limits).ok_or_else(undetermined)?;
+    let folds = setting.fold_fits(&found.best.state).ok_or_else(undetermined)?;
+    let uncertainty = Uncertainty::of(&folds, &space);
+    let sizes = Sizes::of(&found, &limits);
+    let verdict = verdict(&found, &sizes);
+    let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
+
+    let (effects, entries) = named(&setting, &found, &uncertainty);
+    let regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
+    let unexplained = if verdict == Verdict::Unexplained {
+        structured(&setting, &found.best.state, &found, &paths)
+    } else {
+        Vec::new()
+    };
+    let state = &found.best.state;
+    let terms = terms(state);
+    let diagnosis = Diagnosis {
+        verdict,
+        statement: words::statement(verdict, &effects, &sizes, &regions, &unexplained),
+        regions,
+        effects,
+        unexplained_share: sizes.share_left(),
+        unexplained,
+        implausible: implausible(&setting, &found),
+        candidates: candidates(&found),
+        sizes,
+        base: found.base.state.model.clone(),
+        augmented: AugmentedModel::new(state.model.clone(), terms),
+        entries,
+        uncertainty,
+        free: space.free.iter().map(|free| free.name()).collect(),
+        at_bound: state.fit.at_bound[..space.free.len()].to_vec(),
+        estimation,
+        holdout,
+        model,
+        config,
+    };
+    Ok(diagnosis)
+}
+
+/// Effects with their values, as a model evaluates them.
+fn terms(state: &crate::state::State) -> Vec<Term> {
+    let mut at = 0;
+    state
+        .guesses
+        .iter()
+        .map(|guess| {
+            let n = guess.amplitudes().len();
+            let amplitudes = guess
+                .amplitudes()
+                .iter()
+                .zip(&state.fit.amplitudes[at..at + n])
+                .map(|(amplitude, value)| value.clamp(amplitude.range.0, amplitude.range.1))
+                .collect();
+            at += n;
+            Term { effect: guess.effect, shape: guess.shape.clone(), amplitudes }
+        })
+        .collect()
+}
+
+fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
+    let improved = without.log_ratios(with).filter(|&ratio| ratio > 0.0).count();
+    Evidence {
+        log_ratio: without.log_ratio(with),
+        rmse_without_n: without.mean_square().sqrt(),
+        rmse_with_n: with.mean_square().sqrt(),
+        blocks_improved: improved,
+        n_blocks: without.blocks.len(),
+        p_value: (chance(without, with) * looks as f64).min(1.0),
+    }
+}
+
+/// The effects that were taken, in order of evidence.
+fn named(setting: &Setting<'_>, found: &Found, uncertainty: &Uncertainty) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
+    let state = &found.best.state;
+    let correlated = correlated_instants(setting, &setting.residuals_n(state));
+    let mut named = Vec::new();
+    let mut list = Vec::new();
+    let mut first = 0;
+    for (index, guess) in state.guesses.iter().enumerate() {
+        let page = guess.effect.page();
+        let errors = shape_errors(setting, state, index, correlated);
+        let parameters = entries(state, index, first, &errors, uncertainty);
+        first += guess.amplitudes().len();
+        let alternatives = alternatives(found, index);
+        let separating_test = alternatives
+            .iter()
+            .find_map(|id| page.confused_with.iter().find(|confusion| confusion.id == *id))
+            .map_or(page.test, |confusion| confusion.test);
+        let evidence = found.taken.get(index).map_or_else(
+            || evidence(&found.base.held_out, &found.best.held_out, found.first.len()),
+            |taken| evidence(&taken.without, &found.best.held_out, found.first.len()),
+        );
+        list.push(EffectEntry { id: page.id.to_owned(), parameters: parameters.clone() });
+        named.push(NamedEffect {
+            id: page.id.to_owned(),
+            name: page.name.to_owned(),
+            equation: page.equation.to_owned(),
+            parameters,
+            evidence,
+            alternatives: alternatives.into_iter().map(str::to_owned).collect(),
+            separating_test: separating_test.to_owned(),
+        });
+    }
+    named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
+    (named, list)
+}
+
+/// What became of every candidate of the first look.
+fn candidates(found: &Found) -> Vec<Candidate> {
+    let base = found.base.held_out.mean_square();
+    let mismatch = (base - found.floor_square).max(f64::MIN_POSITIVE);
+    let taken: Vec<&str> = found.best.state.guesses.iter().map(crate::hypothesis::Guess::id).collect();
+    let rivals: Vec<&str> = (0..taken.len()).flat_map(|index| alternatives(found, index)).collect();
+    found
+        .first
+        .iter()
+        .map(|trial| {
+            let id = trial.guess.id();
+            let explains = ((base - trial.held_out.mean_square()) / mismatch).clamp(0.0, 1.0);
+            let outcome = if taken.contains(&id) {
+                "named".to_owned()
+            } else if rivals.contains(&id) {
+                "cannot be told from what was named".to_owned()
+            } else if explains < 0.02 {
+                "explains nothing".to_owned()
+            } else {
+                "explains less than what was named, and nothing beside it".to_owned()
+            };
+            Candidate {
+                id: id.to_owned(),
+                evidence: evidence(&found.base.held_out, &trial.held_out, found.first.len()),
+                explains,
+                outcome,
+            }
+        })
+        .collect()
+}
+
+/// Where the mismatch lies: what each effect explains over its own coordinate, then what the residual says by itself.
+fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) -> Vec<Region> {
+    let mut regions: Vec<(f64, Region)> = Vec::new();
+    let state = &found.best.state;
+    let after = setting.residuals_n(state);
+    for (index, guess) in state.guesses.iter().enumerate() {
+        let mut others = state.guesses.clone();
+        others.remove(index);
+        let near = &state.fit.x[..setting.space.free.len()];
+        let Some(rest) = setting.fit(others, near, &state.model) else { continue };
+        let before = setting.residuals_n(&rest);
+        let excess: Vec<f64> =
+            before.iter().zip(&after).map(|(before, after)| before * before - after * after).collect();
+        let coordinate = guess.effect.page().coordinate;
+        let (log_ratio, p_value) = found.taken.get(index).map_or((0.0, 1.0), |taken| {
+            (
+                taken.without.log_ratio(&found.best.held_out),
+                (chance(&taken.without, &found.best.held_out) * found.first.len() as f64).min(1.0),
+            )
+        });
+        if let Some(region) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
+            regions.push((log_ratio, region));
+        }
+    }
+    regions.sort_by(|left, right| right.0.total_cmp(&left.0));
+    let mut out: Vec<Region> = regions.into_iter().map(|(_, region)| region).collect();
+    for region in structured(setting, &found.base.state, found, paths) {
+        if out.iter().all(|known| known.coordinate != region.coordinate) {
+            out.push(region);
+        }
+    }
+    out
+}
+
+/// Coordinates over which the residual of a state is structured, the most telling first.
+fn structured(setting: &Setting<'_>, state: &crate::state::State, found: &Found, paths: &[String]) -> Vec<Region> {
+    let remainder = Remainder::of(setting, state);
+    let Some(nothing) = remainder.structure(&[]) else { return Vec::new() };
+    let mut telling: Vec<(f64, Region)> = Vec::new();
+    for coordinate in Coordinate::ALL {
+        let best = found
+            .features
+            .iter()
+            .filter(|feature| feature.coordinate == coordinate && !feature.plane)
+            .filter_map(|feature| remainder.structure(&[feature]))
+            .map(|structure| (nothing.held_out.log_ratio(&structure.held_out), structure))
+            .max_by(|left, right| left.0.total_cmp(&right.0));
+        let Some((gain, structure)) = best.filter(|(gain, _)| *gain > 0.5) else { continue };
+        let excess: Vec<f64> = structure.values_n.iter().map(|value| value * value).collect();
+        let looks = found.features.len() as f64;
+        let p_value = (chance(&nothing.held_out, &structure.held_out) * looks).min(1.0);
+        if let Some(region) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
+            telling.push((gain, region));
+        }
+    }
+    telling.sort_by(|left, right| right.0.total_cmp(&left.0));
+    telling.into_iter().map(|(_, region)| region).collect()
+}
+
+/// Base parameters outside what is plausible, with everything that was named beside them.
+fn implausible(setting: &Setting<'_>, found: &Found) -> Vec<Implausible> {
+    let x = &found.best.state.fit.x;
+    setting
+        .space
+        .free
+        .iter()
+        .enumerate()
+        .filter_map(|(index, free)| {
+            let value = setting.space.value(index, x[index]);
+            let (low, high) = free.ranges(setting.strand_modulus_pa).plausible;
+            let margin = 1e-6 * (high - low);
+            if (low - margin..=high + margin).contains(&value) {
+                return None;
+            }
+            let modulus = free.name() == "strand_modulus";
+            let written = |value: f64| if modulus { 1.0 / value } else { value };
+            Some(Implausible {
+                parameter: free.name().to_owned(),
+                value: written(value),
+                unit: match free.name() {
+                    "k3" => "N",
+                    "strand_modulus" | "c10" | "c01" | "c10 + c01" => "Pa",
+                    _ => "1",
+                }
+                .to_owned(),
+                plausible: if modulus { [written(high), written(low)] } else { [low, high] },
+                likely_cause: free.likely_cause(value > high).to_owned(),
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,72 @@
+//! Why a diagnosis cannot be made.
+
+use pam_identification::error::IdentifyError;
+
+/// Why a diagnosis cannot be made; every message names the place and the remedy.
+#[derive(Debug, thiserror::Error)]
+pub enum DiagnoseError {
+    /// A recording is not what an identification could use either.
+    #[error(transparent)]
+    Recording(#[from] IdentifyError),
+    /// Too little to tell structure from noise.
+    #[error(
+        "{path}: {have_s:.1} s of motion in all is too short to judge by; record at least {more_s:.0} s more (blocks of some \
+         seconds are held out in turn)"
+    )]
+    TooShort {
+        /// First recording.
+        path: String,
+        /// What there is, in s.
+        have_s: f64,
+        /// What is missing, in s.
+        more_s: f64,
+    },
+    /// The same recording on both sides.
+    #[error(
+        "{path}: has the same samples as {other}, which is fitted; a hold-out must be a recording that nothing was fitted to"
+    )]
+    Overlap {
+        /// Held-out recording.
+        path: String,
+        /// Estimation recording.
+        other: String,
+    },
+    /// Something about the instruments is wrong before any physics is.
+    #[error("{0}")]
+    Fault(pam_identification::faults::Fault),
+    /// A channel that should vary does not.
+    #[error("{path}: {channel} stays at {value} {unit} throughout; check its wiring, or leave the recording out")]
+    Constant {
+        /// Recording.
+        path: String,
+        /// Channel.
+        channel: &'static str,
+        /// Where it stays.
+        value: f64,
+        /// Unit.
+        unit: &'static str,
+    },
+    /// A channel at the end of its range.
+    #[error(
+        "{path}: {channel} stands at {value:.1} {unit}, the end of its range, in {percent:.0} % of the samples; the sensor is \
+         saturated: leave the recording out, or take a sensor with more range"
+    )]
+    Saturated {
+        /// Recording.
+        path: String,
+        /// Channel.
+        channel: &'static str,
+        /// Where it stands.
+        value: f64,
+        /// Unit.
+        unit: &'static str,
+        /// Share of the samples, in percent.
+        percent: f64,
+    },
+    /// The recordings do not determine even the base model.
+    #[error("{path}: the recordings do not determine the base model; add one in which pressure and length both change")]
+    Undetermined {
+        /// First recording.
+        path: String,
+    },
+}

@@ -1,0 +1,79 @@
+//! The diagnosis in words.
+
+use pam_core::artifact::diagnosis::{Coordinate, NamedEffect, Region, Verdict};
+
+use crate::verdict::Sizes;
+
+/// The verdict in one sentence.
+pub(crate) fn statement(
+    verdict: Verdict,
+    effects: &[NamedEffect],
+    sizes: &Sizes,
+    regions: &[Region],
+    unexplained: &[Region],
+) -> String {
+    let names: Vec<&str> = effects.iter().map(|effect| effect.name.as_str()).collect();
+    match verdict {
+        Verdict::Consistent => format!(
+            "Nothing is missing that matters: beyond what noise leaves ({:.2} N) the model is off by {:.2} N, and {:.2} N would \
+             matter.",
+            sizes.floor_n, sizes.mismatch_n, sizes.matters_n
+        ),
+        Verdict::Explained => format!(
+            "The model lacks {}: that explains {:.0} % of a mismatch of {:.2} N, which lies {}.",
+            list(&names),
+            100.0 * (1.0 - sizes.share_left()),
+            sizes.mismatch_n,
+            regions.first().map_or_else(|| "nowhere in particular".to_owned(), place)
+        ),
+        Verdict::Ambiguous => {
+            let others: Vec<String> = effects
+                .iter()
+                .filter(|effect| !effect.alternatives.is_empty())
+                .map(|effect| format!("{} or {}", effect.id, effect.alternatives.join(" or ")))
+                .collect();
+            format!(
+                "The model lacks {}, but these recordings cannot tell {}; a mismatch of {:.2} N is explained either way.",
+                list(&names),
+                others.join(", nor "),
+                sizes.mismatch_n
+            )
+        }
+        Verdict::Unexplained => {
+            let place = unexplained.first().map_or_else(|| "nowhere in particular".to_owned(), place);
+            if names.is_empty() {
+                format!("Something is missing that has no name here: a mismatch of {:.2} N, {place}.", sizes.mismatch_n)
+            } else {
+                format!(
+                    "The model lacks {}, and something more that has no name here: {:.2} N of {:.2} N are left, {place}.",
+                    list(&names),
+                    sizes.left_n,
+                    sizes.mismatch_n
+                )
+            }
+        }
+    }
+}
+
+fn list(names: &[&str]) -> String {
+    match names {
+        [] => "nothing".to_owned(),
+        [only] => (*only).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+/// A region in words, in the units that people use.
+pub fn place(region: &Region) -> String {
+    let (scale, unit, words) = match region.coordinate {
+        Coordinate::Time => (1.0, "s", "in time, from"),
+        Coordinate::Pressure => (1e-3, "kPa", "in pressure, from"),
+        Coordinate::Contraction => (1e2, "%", "in contraction, from"),
+        Coordinate::Speed => (1e3, "mm/s", "in speed, from"),
+        Coordinate::TravelSinceReversal => (1e3, "mm", "in travel since the last reversal, from"),
+        Coordinate::TimeSinceLastMove => (1.0, "s", "in time since the last move, from"),
+        Coordinate::Cycle => (1.0, "", "in cycles, from"),
+        Coordinate::Force => (1.0, "N", "in force, from"),
+    };
+    format!("{words} {:.3} to {:.3} {unit}", region.from * scale, region.to * scale).trim_end().to_owned()
+}
