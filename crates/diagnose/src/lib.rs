@@ -3,6 +3,7 @@
 //! In reading order: [`track`] is the recordings on a common grid, [`sheet`] what a [`hypothesis`] makes of it, [`normal`]
 //! and [`joint`] fit base and effects together and judge them on held-out blocks.
 
+pub mod artifact;
 pub mod base;
 mod check;
 pub mod coordinates;
@@ -18,6 +19,7 @@ mod shift;
 pub mod state;
 mod steps;
 pub mod structure;
+pub mod traces;
 pub mod track;
 pub mod trial;
 pub mod uncertainty;
