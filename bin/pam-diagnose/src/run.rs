@@ -12,13 +12,16 @@ use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose};
 use pam_diagnosis::traces::traces;
 
 use crate::args::Args;
-use crate::{page, tables};
+use crate::{explain, page, tables};
 
 /// Samples of each recording that the report draws, at most.
 const REPORT_SAMPLES: usize = 20_000;
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     let console = args.run.start()?;
+    if let Some(id) = &args.explain {
+        return explain::explain(args, &console, id);
+    }
     let model_path = args.model.as_deref().context("--model is missing")?;
     if let Some(limit) = args.matters_above_n {
         ensure!(

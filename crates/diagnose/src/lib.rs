@@ -9,6 +9,7 @@ mod check;
 pub mod coordinates;
 pub mod diagnose;
 pub mod error;
+pub mod explain;
 pub mod hypothesis;
 pub mod joint;
 pub mod normal;
