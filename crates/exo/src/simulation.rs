@@ -1,6 +1,6 @@
 //! A configuration and a muscle together: lifts that can be run.
 
-use pam_core::force::ForceModel;
+use pam_core::effects::AugmentedModel;
 use rand_pcg::Pcg64;
 
 use crate::arm::{Elbow, Lever, Load};
@@ -15,12 +15,12 @@ use crate::plant::{ArmPhysics, BladderGas, MusclePhysics, Sensor};
 pub struct Simulation<'a> {
     /// Configuration.
     pub plan: &'a LiftPlan,
-    /// Force of the muscle as the controller knows it.
-    pub model: &'a ForceModel,
+    /// Force of the muscle as the controller knows it, without instruments, fixture and events.
+    pub model: &'a AugmentedModel,
     /// Its inverse.
     pub inverse: &'a dyn Inverse,
-    /// Force of the muscle as it is.
-    pub plant: &'a ForceModel,
+    /// Force of the muscle as it is, likewise.
+    pub plant: &'a AugmentedModel,
 }
 
 impl std::fmt::Debug for Simulation<'_> {
@@ -66,7 +66,7 @@ impl Deviation {
 impl Simulation<'_> {
     /// Active length of the muscle at `q = 0`, in m.
     pub fn mounted_length_m(&self) -> f64 {
-        self.plan.mounted_length_m.unwrap_or(self.model.muscle().rest_length_m)
+        self.plan.mounted_length_m.unwrap_or(self.model.base().muscle().rest_length_m)
     }
 
     /// Muscle on the elbow, as configured.
@@ -81,14 +81,14 @@ impl Simulation<'_> {
             load: plan.load,
             forearm: plan.forearm,
             lever: self.lever(),
-            gas: BladderGas::new(self.model.muscle(), plan.dead_volume_m3),
+            gas: BladderGas::new(self.model.base().muscle(), plan.dead_volume_m3),
             force: self.model,
             inverse: self.inverse,
         }
     }
 
     /// One arm of the plant with a deviation and the muscle `force`.
-    pub fn physics(&self, deviation: &Deviation, force: &ForceModel) -> ArmPhysics {
+    pub fn physics(&self, deviation: &Deviation, force: &AugmentedModel) -> ArmPhysics {
         let plan = self.plan;
         let [upper, lower, load_arm] = deviation.geometry;
         let scale = if plan.load.mass_kg > 0.0 { plan.true_mass_kg / plan.load.mass_kg } else { 1.0 };
@@ -106,14 +106,14 @@ impl Simulation<'_> {
                 plan.lower_m * lower,
                 self.mounted_length_m() + deviation.mounting_m,
             ),
-            muscle: MusclePhysics {
-                force: force.clone(),
-                friction_scale: plan.friction_factor * deviation.friction,
-                presliding_m: plan.presliding_m,
-                bowden: plan.bowden,
-            },
+            muscle: MusclePhysics::new(
+                force,
+                plan.friction_factor * deviation.friction,
+                plan.presliding_m,
+                plan.bowden,
+            ),
             damping_n_m_s: plan.damping_n_m_s,
-            gas: BladderGas::new(force.muscle(), plan.dead_volume_m3),
+            gas: BladderGas::new(force.base().muscle(), plan.dead_volume_m3),
             valve,
             step_s: plan.step_s,
         }
@@ -123,7 +123,7 @@ impl Simulation<'_> {
     pub fn run(
         &self,
         deviation: &Deviation,
-        force: &ForceModel,
+        force: &AugmentedModel,
         rng: &mut Pcg64,
         mut watch: impl FnMut(usize, &Instant),
     ) -> [Outcome; 2] {
