@@ -93,7 +93,7 @@ pub struct Controller<'a> {
     followed_m: f64,
     direction: f64,
     /// Motion as measured, where effects are to be followed.
-    history: Option<History<'a>>,
+    history: Option<History>,
     /// What they add to the settled force now, in N.
     remembered_n: f64,
     pressure_pa: f64,
@@ -105,6 +105,16 @@ pub struct Controller<'a> {
 struct Weighed {
     torque_n_m: f64,
     count: f64,
+}
+
+/// A lag of the pressure: to oppose it by the pressure is to feed it back, and the loop around the valve rings.
+const LEFT_TO_THE_LOOP: &str = "pressure-lag";
+
+/// What the controller remembers of effects; none where there is nothing to remember.
+fn history(model: &AugmentedModel) -> Option<History> {
+    let followed = model.terms().iter().filter(|term| term.effect.page().id != LEFT_TO_THE_LOOP).cloned().collect();
+    let model = AugmentedModel::new(model.base().clone(), followed);
+    (!model.is_plain()).then(|| History::new(model))
 }
 
 /// Play between observed length and friction, in m; five times what the observer leaves of the angle's noise.
@@ -131,7 +141,7 @@ impl<'a> Controller<'a> {
             friction: Dahl::new(settings.presliding_m, 0.0),
             followed_m: knowledge.lever.at_angle(reference.from_rad).length_m,
             direction: if reference.to_rad < reference.from_rad { -1.0 } else { 1.0 },
-            history: (settings.effect_memory && !knowledge.force.is_plain()).then(|| History::new(knowledge.force)),
+            history: if settings.effect_memory { history(knowledge.force) } else { None },
             remembered_n: 0.0,
             pressure_pa,
             weighed: Weighed::default(),
@@ -274,8 +284,8 @@ impl<'a> Controller<'a> {
         let Some(history) = &mut self.history else { return };
         let length_m = self.followed_m;
         let state = if self.settings.hysteresis_aware { self.friction.state } else { self.direction };
-        let now_n = history.advance(self.settings.period_s, pressure_pa, length_m, state);
-        self.remembered_n = now_n - self.knowledge.force.settled_force_n(pressure_pa, length_m, state);
+        history.advance(self.settings.period_s, pressure_pa, length_m, state);
+        self.remembered_n = history.remembered_n();
     }
 
     /// What the valve must be told so that the pressure becomes the desired one.

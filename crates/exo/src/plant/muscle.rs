@@ -75,7 +75,7 @@ pub struct PlantMuscle<'a> {
     physics: &'a MusclePhysics,
     friction: Dahl,
     /// What effects remember, where there are any.
-    history: Option<History<'a>>,
+    history: Option<History>,
     length_m: f64,
 }
 
@@ -91,7 +91,7 @@ pub struct Pull {
 impl<'a> PlantMuscle<'a> {
     /// A muscle that has rested at a length with a state of its friction, -1 to 1.
     pub fn at_rest(physics: &'a MusclePhysics, length_m: f64, friction_state: f64) -> Self {
-        let history = (!physics.force.is_plain()).then(|| History::new(&physics.force));
+        let history = (!physics.force.is_plain()).then(|| History::new(physics.force.clone()));
         Self { physics, friction: Dahl::new(physics.presliding_m, friction_state), history, length_m }
     }
 
