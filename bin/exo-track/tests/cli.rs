@@ -155,6 +155,66 @@ fn an_artifact_of_another_kind_is_refused() {
     }
 }
 
+/// The model with an effect of one parameter.
+fn with_effect(folder: &Path, id: &str, name: &str, value: f64, unit: &str) {
+    let text = std::fs::read_to_string(MODEL).unwrap();
+    let mut model: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let parameter = serde_json::json!({"name": name, "value": value, "unit": unit, "stderr": null, "status": "fitted"});
+    model["effects"] = serde_json::json!([{"id": id, "parameters": [parameter]}]);
+    std::fs::write(folder.join("effect.json"), model.to_string()).unwrap();
+}
+
+/// Mean absolute angle error of the left arm, in rad.
+fn mae_rad(folder: &Path, more: &[&str]) -> f64 {
+    let output = run(folder, &[&["--out", "track.csv", "--metrics", "metrics.json"], more].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let metrics: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.join("metrics.json")).unwrap()).unwrap();
+    metrics["left"]["errors"]["angle_rad"]["mae"].as_f64().unwrap()
+}
+
+#[test]
+fn a_concealed_threshold_costs_tracking_and_a_model_that_knows_it_gets_it_back() {
+    let folder = folder(&[]);
+    let base_rad = mae_rad(folder.path(), &[]);
+    with_effect(folder.path(), "threshold-pressure", "threshold_pa", 4e4, "Pa");
+    let concealed_rad = mae_rad(folder.path(), &["--plant", "effect.json"]);
+    let output = Command::new(env!("CARGO_BIN_EXE_exo-track"))
+        .current_dir(folder.path())
+        .args(["--config", "lift.toml", "--model", "effect.json", "--out", "track.csv", "--metrics", "metrics.json"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metrics: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("metrics.json")).unwrap()).unwrap();
+    let known_rad = metrics["left"]["errors"]["angle_rad"]["mae"].as_f64().unwrap();
+    assert!(concealed_rad > 5.0 * base_rad && known_rad < 2.0 * base_rad, "{base_rad} {concealed_rad} {known_rad}");
+}
+
+#[test]
+fn an_effect_that_is_not_the_muscle_s_stays_at_the_bench() {
+    let folder = folder(&[]);
+    let base_rad = mae_rad(folder.path(), &[]);
+    with_effect(folder.path(), "series-compliance", "compliance_m_per_n", 1e-6, "m/N");
+    assert_eq!(mae_rad(folder.path(), &["--plant", "effect.json"]).to_bits(), base_rad.to_bits());
+    let output = run(folder.path(), &["--out", "track.csv", "--plant", "effect.json"]);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        text.contains("effect.json: left out of the lift, as they are not the muscle's: series-compliance"),
+        "{text}"
+    );
+}
+
+#[test]
+fn an_effect_that_the_catalogue_does_not_have_is_refused() {
+    let folder = folder(&[]);
+    with_effect(folder.path(), "gearbox", "ratio", 2.0, "1");
+    let output = run(folder.path(), &["--out", "track.csv", "--plant", "effect.json"]);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(text.contains("effect.json: effect \"gearbox\" is unknown; the nearest are"), "{text}");
+}
+
 /// What a lift is rejected for, one line for each arm and trouble; its track is there to look at.
 fn rejected(changes: &[(&str, &str)]) -> String {
     let folder = folder(changes);
