@@ -1,12 +1,12 @@
 //! Recording and model in, recording with two more columns out.
 
 use anyhow::{Context as _, ensure};
-use pam_cli::{Output, Verdict};
+use pam_cli::{Console, Output, Verdict};
 use pam_core::artifact::ModelArtifact;
-use pam_core::force::ForceModel;
+use pam_core::effects::{AugmentedModel, Kind};
 use pam_core::recording::{ReadOptions, read_recording};
-use pam_identification::evaluate::evaluate;
-use pam_identification::predict::{forces_n, outside, prepare};
+use pam_identification::evaluate::evaluate_augmented;
+use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare};
 use pam_identification::prepare::Prepared;
 
 use crate::args::Args;
@@ -33,10 +33,16 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     for words in outside(&prepared, &artifact.domain) {
         console.warn(words);
     }
-    let model = artifact.force_model();
+    let model = of_any_recording(&artifact, &console);
     if let Some(mut out) = out {
         let path = out.path().display().to_string();
-        write(&mut out, &prepared, &model).with_context(|| format!("cannot write {path}"))?;
+        // Only effects remember, and only with them the forces are computed beforehand.
+        let augmented_n = if model.is_plain() {
+            None
+        } else {
+            Some(augmented_forces_n(&prepared, &model, artifact.direction, artifact.geometry.rest_length_m)?)
+        };
+        write(&mut out, &prepared, &model, augmented_n.as_deref()).with_context(|| format!("cannot write {path}"))?;
         out.finish()?;
         if path != "-" {
             console.note(format!("wrote {path}"));
@@ -45,7 +51,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     if !prepared.recording.samples.has_force() {
         return Ok(Verdict::Accepted);
     }
-    let evaluation = evaluate(std::slice::from_ref(&prepared), &model)?;
+    let evaluation = evaluate_augmented(
+        std::slice::from_ref(&prepared),
+        &model,
+        artifact.direction,
+        artifact.geometry.rest_length_m,
+    )?;
     let statistics = evaluation.each[0];
     console.note(format!(
         "RMSE {:.3} N, largest {:.1} N, fit {:.2} % over {} samples ({} at reversals left out)",
@@ -58,8 +69,27 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     Ok(Verdict::Accepted)
 }
 
+/// The model with all its effects but events, which belong to the recordings that it was diagnosed on.
+fn of_any_recording(artifact: &ModelArtifact, console: &Console) -> AugmentedModel {
+    let model = artifact.augmented_model();
+    let events = model.terms().iter().filter(|term| term.effect.kind() == Kind::Event).count();
+    if events > 0 {
+        console.note(format!(
+            "{events} of the model's effects happened once, in a recording that it was diagnosed on, and are left out"
+        ));
+    }
+    model.without_events()
+}
+
 /// Decimals are those of a good sensor: 1 µs, 0.1 Pa, 0.1 µm, 0.1 mN.
-fn write(out: &mut Output, prepared: &Prepared, model: &ForceModel) -> std::io::Result<()> {
+///
+/// `augmented_n` are the forces of all rows where the model has effects.
+fn write(
+    out: &mut Output,
+    prepared: &Prepared,
+    model: &AugmentedModel,
+    augmented_n: Option<&[f64]>,
+) -> std::io::Result<()> {
     let samples = &prepared.recording.samples;
     let (has_force, has_temperature) = (samples.has_force(), samples.has_temperature());
     let mut table = csv::Writer::from_writer(out);
@@ -78,7 +108,10 @@ fn write(out: &mut Output, prepared: &Prepared, model: &ForceModel) -> std::io::
     let mut record = csv::ByteRecord::new();
     for chunk in samples.chunks() {
         let chunk = chunk?;
-        let model_n = forces_n(prepared, model, &chunk);
+        let model_n = match augmented_n {
+            Some(all_n) => all_n[chunk.rows()].to_vec(),
+            None => forces_n(prepared, model.base(), &chunk),
+        };
         for (row, &model_n) in model_n.iter().enumerate() {
             record.clear();
             let mut field = |value: f64, decimals: usize| {

@@ -86,6 +86,103 @@ fn a_recording_without_force_is_predicted_too() {
     assert_eq!(refused.status.code(), Some(2));
 }
 
+/// The model with effects, each an id with its parameters as name, value and unit.
+fn with_effects(effects: &[(&str, &[(&str, f64, &str)])]) -> String {
+    let entries: Vec<String> = effects
+        .iter()
+        .map(|(id, parameters)| {
+            let parameters: Vec<String> = parameters
+                .iter()
+                .map(|(name, value, unit)| {
+                    format!(
+                        "{{\"name\": \"{name}\", \"value\": {value:?}, \"unit\": \"{unit}\", \"stderr\": null, \"status\": \"fitted\"}}"
+                    )
+                })
+                .collect();
+            format!("{{\"id\": \"{id}\", \"parameters\": [{}]}}", parameters.join(", "))
+        })
+        .collect();
+    MODEL.replace("\"effects\": []", &format!("\"effects\": [{}]", entries.join(", ")))
+}
+
+/// Values of a column of a CSV file.
+fn column(text: &str, name: &str) -> Vec<f64> {
+    let mut lines = text.lines();
+    let at = lines.next().unwrap().split(',').position(|column| column == name).unwrap();
+    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
+}
+
+#[test]
+fn effects_of_size_zero_change_no_byte() {
+    let bench = Bench::new();
+    let damping = [("damping_n_s_per_m", 0.0, "N s/m"), ("damping_with_pressure_n_s_per_m", 0.0, "N s/m")];
+    let none = with_effects(&[
+        ("viscous-damping", &damping),
+        ("load-dependent-friction", &[("friction_per_load", 0.0, "1")]),
+        ("channel-delay", &[("pressure_delay_s", 0.0, "s"), ("length_delay_s", 0.0, "s")]),
+    ]);
+    bench.file("none.json", &none);
+    let of = |model: &str| bench.run(&format!("log.csv --model {model} --out -"));
+    let (plain, augmented) = (of("model.json"), of("none.json"));
+    assert_eq!(augmented.status.code(), Some(0), "{}", String::from_utf8_lossy(&augmented.stderr));
+    assert!(plain.stdout == augmented.stdout);
+    let rmse = |output: &Output| {
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        said.lines().find(|line| line.contains("RMSE")).map(str::to_owned)
+    };
+    assert!(rmse(&plain).is_some());
+    assert_eq!(rmse(&plain), rmse(&augmented));
+}
+
+#[test]
+fn a_threshold_lowers_the_force_at_low_pressure() {
+    let bench = Bench::new();
+    let rows: String = (0..200)
+        .map(|row| format!("{},{},{}\n", 0.01 * f64::from(row), 2.0 * f64::from(row), 260.0 - 0.05 * f64::from(row)))
+        .collect();
+    bench.file("ramp.csv", &format!("time_s,pressure_kPa,length_mm\n{rows}"));
+    bench.file("threshold.json", &with_effects(&[("threshold-pressure", &[("threshold_pa", 4e4, "Pa")])]));
+    let of = |model: &str| {
+        let output = bench.run(&format!("ramp.csv --model {model} --out - --quiet"));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let (plain, behind) = (of("model.json"), of("threshold.json"));
+    let hinge_kpa = |excess: f64| 0.5 * (excess + excess.hypot(10.0));
+    let pressures = column(&plain, "pressure_kPa");
+    let forces = column(&plain, "force_model_N").into_iter().zip(column(&behind, "force_model_N"));
+    for (pressure_kpa, (plain_n, behind_n)) in pressures.into_iter().zip(forces).skip(1) {
+        // Gas alone pulls, in proportion to the pressure, on top of a constant of 2 N.
+        let seen_kpa = hinge_kpa(pressure_kpa - 40.0) - hinge_kpa(-40.0);
+        let expected_n = 2.0 + (plain_n - 2.0) * seen_kpa / pressure_kpa;
+        assert!((behind_n - expected_n).abs() < 1e-3, "{pressure_kpa}: {behind_n} {expected_n}");
+    }
+}
+
+#[test]
+fn what_happened_once_is_left_out_and_a_delay_moves_a_channel() {
+    let bench = Bench::new();
+    let step = [("recording", 0.0, "1"), ("instant_s", 0.0, "s"), ("step_n", 50.0, "N")];
+    bench.file("step.json", &with_effects(&[("force-step", &step)]));
+    let output = bench.run("log.csv --model step.json --out -");
+    assert!(output.stdout == bench.run("log.csv --model model.json --out -").stdout);
+    assert!(String::from_utf8(output.stderr).unwrap().contains("happened once"));
+
+    // A pressure that rises evenly: 20 ms later it is 4 kPa higher.
+    let rows: String =
+        (0..400).map(|row| format!("{},{},255\n", 0.01 * f64::from(row), 2.0 + f64::from(row))).collect();
+    bench.file("ramp.csv", &format!("time_s,pressure_kPa,length_mm\n{rows}"));
+    let delay = [("pressure_delay_s", 0.02, "s"), ("length_delay_s", 0.0, "s")];
+    bench.file("late.json", &with_effects(&[("channel-delay", &delay)]));
+    let of = |model: &str| {
+        let output = bench.run(&format!("ramp.csv --model {model} --out - --quiet"));
+        column(&String::from_utf8(output.stdout).unwrap(), "force_model_N")
+    };
+    let (plain_n, late_n) = (of("model.json"), of("late.json"));
+    for row in 10..390 {
+        assert!((late_n[row] - plain_n[row + 2]).abs() < 1e-3, "{row}: {} {}", late_n[row], plain_n[row + 2]);
+    }
+}
+
 #[test]
 fn a_residual_above_the_limit_is_rejected_and_still_written() {
     let bench = Bench::new();
@@ -114,6 +211,7 @@ fn every_bad_input_gets_one_line_with_the_remedy() {
     bench.file("shape.json", &MODEL.replacen("\"name\": \"k2\"", "\"name\": \"k1\"", 1));
     bench.file("soft.json", &MODEL.replace("1e15", "-3e9"));
     bench.file("odd.json", &MODEL.replacen("\"form\"", "\"shape\"", 1));
+    bench.file("gears.json", &with_effects(&[("stribek", &[])]));
     let cases = [
         ("log.csv --model none.json --out out.csv", "cannot read none.json: No such file or directory (os error 2)"),
         (
@@ -123,6 +221,11 @@ fn every_bad_input_gets_one_line_with_the_remedy() {
         (
             "log.csv --model later.json --out out.csv",
             "later.json: schema is \"pam-model/9\", expected \"pam-model/1\"; write it with pam-identify",
+        ),
+        (
+            "log.csv --model gears.json --out out.csv",
+            "gears.json: effect \"stribek\" is unknown; the nearest are stribeck, slack, inertia; write the artifact anew with \
+             its program",
         ),
         (
             "log.csv --model broken.json --out out.csv",

@@ -64,7 +64,7 @@ fn inverse_map(outcome: &Outcome, exact: &ExactInverse, direction: f64) -> Inver
             let force_n = |step: usize| {
                 let share = step as f64 / PRESSURES as f64;
                 let pressure_pa = inverse_box.pressure_pa[0] + share * inverse_box.pressure_span_pa();
-                exact.model().force_n(pressure_pa, length_m, direction)
+                exact.model().settled_force_n(pressure_pa, length_m, direction)
             };
             (0..=PRESSURES).map(force_n).fold((f64::NAN, f64::NAN), |(low, high), n| (low.min(n), high.max(n)))
         })

@@ -23,6 +23,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
 
     let (model, sha256) = ModelArtifact::read(&args.model)?;
+    let beside = model.augmented_model().beside_the_muscle();
+    if !beside.is_empty() {
+        console.note(format!("left out, as they are not the muscle's: {}", beside.join(", ")));
+    }
     let mut hashes = vec![Input { path: args.model.display().to_string(), sha256, role: InputRole::Model }];
     let recordings = read_all(args, &console)?;
     hashes.extend(recordings.iter().map(|recording| Input {

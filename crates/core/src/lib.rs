@@ -12,3 +12,4 @@ pub mod motion;
 pub mod muscle;
 pub mod quality;
 pub mod recording;
+pub mod shift;

@@ -1,11 +1,14 @@
 //! A model against recordings: statistics of the residual, and traces for figures.
 
 use pam_core::artifact::model::FitStatistics;
+use pam_core::direction::Thresholds;
+use pam_core::effects::AugmentedModel;
 use pam_core::force::ForceModel;
 use pam_core::recording::CHUNK_ROWS;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;
+use crate::predict::walk_augmented;
 use crate::prepare::Prepared;
 
 /// Most samples of one recording that a trace keeps.
@@ -119,15 +122,56 @@ pub struct Evaluation {
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn evaluate(recordings: &[Prepared], model: &ForceModel) -> Result<Evaluation, IdentifyError> {
-    let mut together = Tally::default();
-    let mut each = Vec::new();
-    for prepared in recordings {
-        let tally = tally(prepared, model)
-            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
-        together.merge(&tally);
-        each.push(tally.statistics());
+    let tally = |prepared: &Prepared| {
+        tally(prepared, model)
+            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })
+    };
+    let tallies: Result<Vec<Tally>, IdentifyError> = recordings.iter().map(tally).collect();
+    Ok(Evaluation::of(&tallies?))
+}
+
+/// Compares an augmented model with `recordings`, each numbered by its place among them; `thresholds` are those of the
+/// direction, `rest_length_m` is that of the muscle. A model without effects costs what [`evaluate`] costs.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn evaluate_augmented(
+    recordings: &[Prepared],
+    model: &AugmentedModel,
+    thresholds: Thresholds,
+    rest_length_m: f64,
+) -> Result<Evaluation, IdentifyError> {
+    if model.is_plain() {
+        return evaluate(recordings, model.base());
     }
-    Ok(Evaluation { together: (!recordings.is_empty()).then(|| together.statistics()), each })
+    let tallies: Result<Vec<Tally>, IdentifyError> = recordings
+        .par_iter()
+        .enumerate()
+        .map(|(index, prepared)| {
+            let mut tally = Tally::default();
+            walk_augmented(prepared, model, thresholds, rest_length_m, index, &mut |instant, model_n| {
+                if instant.settled {
+                    tally.push(instant.force_n, model_n);
+                } else {
+                    tally.push_unsettled(instant.force_n, model_n);
+                }
+            })
+            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+            Ok(tally)
+        })
+        .collect();
+    Ok(Evaluation::of(&tallies?))
+}
+
+impl Evaluation {
+    fn of(tallies: &[Tally]) -> Self {
+        let mut together = Tally::default();
+        tallies.iter().for_each(|tally| together.merge(tally));
+        Self {
+            together: (!tallies.is_empty()).then(|| together.statistics()),
+            each: tallies.iter().map(Tally::statistics).collect(),
+        }
+    }
 }
 
 fn tally(prepared: &Prepared, model: &ForceModel) -> std::io::Result<Tally> {
@@ -223,4 +267,26 @@ pub fn trace(prepared: &Prepared, model: &ForceModel) -> Result<Trace, IdentifyE
         }
     }
     Ok(trace)
+}
+
+/// Samples of `prepared` beside what an augmented model says; `index` is the number of the recording.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn trace_augmented(
+    prepared: &Prepared,
+    model: &AugmentedModel,
+    thresholds: Thresholds,
+    rest_length_m: f64,
+    index: usize,
+) -> Result<Trace, IdentifyError> {
+    let stride = prepared.recording.samples.n_rows().div_ceil(TRACE_SAMPLES).max(1);
+    let mut model_n = Vec::new();
+    walk_augmented(prepared, model, thresholds, rest_length_m, index, &mut |instant, force_n| {
+        if instant.row.is_multiple_of(stride) {
+            model_n.push(force_n);
+        }
+    })
+    .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+    Ok(Trace { model_n, ..trace(prepared, model.base())? })
 }

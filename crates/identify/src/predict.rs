@@ -1,9 +1,15 @@
 //! A model along a recording, row by row.
 
+use std::io;
+
 use pam_core::artifact::ModelArtifact;
 use pam_core::artifact::model::Domain;
+use pam_core::direction::Thresholds;
+use pam_core::effects::{AugmentedModel, Moment};
 use pam_core::force::ForceModel;
+use pam_core::motion::{Channels, Instant, walk};
 use pam_core::recording::Chunk;
+use pam_core::shift::shifted;
 
 use crate::error::IdentifyError;
 use crate::prepare::{Prepared, direct, gate};
@@ -26,6 +32,66 @@ pub fn forces_n(prepared: &Prepared, model: &ForceModel, chunk: &Chunk) -> Vec<f
         .zip(chunk.length_m())
         .map(|((row, &pressure_pa), &length_m)| model.force_n(pressure_pa, length_m, prepared.direction.sign(row)))
         .collect()
+}
+
+/// Walks over every row of a recording with an augmented model, in order: what was recorded, and the modelled force in
+/// N. `index` is the number of the recording, `rest_length_m` that of the muscle.
+///
+/// Where no force was recorded, effects see the model's own of the row before.
+///
+/// # Errors
+/// Where the samples cannot be read back.
+pub fn walk_augmented(
+    prepared: &Prepared,
+    model: &AugmentedModel,
+    thresholds: Thresholds,
+    rest_length_m: f64,
+    index: usize,
+    visit: &mut dyn FnMut(&Instant, f64),
+) -> io::Result<()> {
+    let Prepared { recording, direction, .. } = prepared;
+    let has_force = recording.samples.has_force();
+    let mut memory = model.start();
+    let mut before_n = None;
+    let mut force_n = |now: Moment| {
+        let seen_n = if has_force {
+            now.force_n
+        } else {
+            before_n.unwrap_or_else(|| model.settled_force_n(now.pressure_pa, now.length_m, now.direction))
+        };
+        let force_n = memory.force_n(model, Moment { force_n: seen_n, ..now });
+        before_n = Some(force_n);
+        force_n
+    };
+    let walk = |visit: &mut dyn FnMut(Instant)| {
+        walk(recording, direction, thresholds, rest_length_m, index, 1, Channels::Recorded, visit)
+    };
+    let delays_s = model.delays_s();
+    if delays_s == [0.0; 2] {
+        return walk(&mut |instant| visit(&instant, force_n(instant.moment)));
+    }
+    let mut instants = Vec::new();
+    walk(&mut |instant| instants.push(instant))?;
+    for (instant, moment) in instants.iter().zip(shifted(&instants, delays_s)) {
+        visit(instant, force_n(moment));
+    }
+    Ok(())
+}
+
+/// Modelled force of every row of a recording in N, with what the model remembers from row to row.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn augmented_forces_n(
+    prepared: &Prepared,
+    model: &AugmentedModel,
+    thresholds: Thresholds,
+    rest_length_m: f64,
+) -> Result<Vec<f64>, IdentifyError> {
+    let mut forces_n = Vec::with_capacity(prepared.recording.samples.n_rows());
+    walk_augmented(prepared, model, thresholds, rest_length_m, 0, &mut |_, force_n| forces_n.push(force_n))
+        .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+    Ok(forces_n)
 }
 
 /// How far a recording leaves what the model was identified on, in words; empty where it stays inside.

@@ -5,7 +5,7 @@
 //! friction can hold it flat at low pressure; what rises in one piece is a *branch*. Where there are several,
 //! the longest is the one that is inverted, and the lower of two equal ones.
 
-use pam_core::force::ForceModel;
+use pam_core::effects::AugmentedModel;
 
 /// Steps that the range of pressure is searched with; a branch shorter than one may be missed.
 const STEPS: usize = 64;
@@ -14,19 +14,19 @@ const REACH: f64 = 1e-5;
 /// Halvings that find the end of a branch.
 const HALVINGS: usize = 30;
 
-/// `dF/dp` in N/Pa by central difference; `span_pa` is the range of pressure that it is taken for. The error of
+/// `dF/dp` of the settled force in N/Pa by central difference; `span_pa` is the range of pressure that it is taken for. The error of
 /// the difference is some 1e-8 of the slope, far below any threshold.
-pub fn slope_n_per_pa(model: &ForceModel, pressure_pa: f64, length_m: f64, direction: f64, span_pa: f64) -> f64 {
+pub fn slope_n_per_pa(model: &AugmentedModel, pressure_pa: f64, length_m: f64, direction: f64, span_pa: f64) -> f64 {
     let step_pa = REACH * span_pa;
-    let above_n = model.force_n(pressure_pa + step_pa, length_m, direction);
-    let below_n = model.force_n(pressure_pa - step_pa, length_m, direction);
+    let above_n = model.settled_force_n(pressure_pa + step_pa, length_m, direction);
+    let below_n = model.settled_force_n(pressure_pa - step_pa, length_m, direction);
     (above_n - below_n) / (2.0 * step_pa)
 }
 
 /// Ranges of pressure, in Pa, over which the force grows by at least `min_slope_n_per_pa`, rising. Where the
 /// force is not finite it does not grow.
 pub fn rising(
-    model: &ForceModel,
+    model: &AugmentedModel,
     length_m: f64,
     direction: f64,
     [from_pa, to_pa]: [f64; 2],
@@ -79,12 +79,12 @@ mod tests {
 
     #[test]
     fn a_stiff_muscle_rises_everywhere() {
-        assert_eq!(rising(&nominal(), 0.24, 1.0, [0.0, 5e5], 1e-5), [[0.0, 5e5]]);
+        assert_eq!(rising(&nominal().into(), 0.24, 1.0, [0.0, 5e5], 1e-5), [[0.0, 5e5]]);
     }
 
     #[test]
     fn a_soft_braid_bends_the_force_over() {
-        let model = soft();
+        let model = soft().into();
         let branches = rising(&model, 0.2, 1.0, [0.0, 5e5], 1e-5);
         assert_eq!(branches.len(), 1);
         let [start_pa, end_pa] = branches[0];
@@ -101,6 +101,6 @@ mod tests {
 
     #[test]
     fn strands_pulled_straight_have_no_inverse() {
-        assert!(rising(&nominal(), 0.5, 1.0, [0.0, 5e5], 1e-5).is_empty());
+        assert!(rising(&nominal().into(), 0.5, 1.0, [0.0, 5e5], 1e-5).is_empty());
     }
 }

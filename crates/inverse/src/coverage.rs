@@ -49,7 +49,7 @@ pub fn map(inverse: &ExactInverse, direction: f64) -> CoverageMap {
         let chosen_pa = crate::branch::longest(&rising_pa);
         for (row, &pressure_pa) in pressure_pa.iter().enumerate() {
             let within = |branch: &[f64; 2]| (branch[0]..=branch[1]).contains(&pressure_pa);
-            let force_n = inverse.model().force_n(pressure_pa, length_m, direction);
+            let force_n = inverse.model().settled_force_n(pressure_pa, length_m, direction);
             kinds[row * LENGTHS + column] = if !rising_pa.iter().any(within) {
                 Kind::Flat
             } else if force_n < inverse_box.force_n[0] {

@@ -68,7 +68,7 @@ pub fn points(inverse: &ExactInverse, n: usize, draw: Draw, seed: u64) -> Vec<Po
             let length_m = inverse_box.length_m[0] + l * inverse_box.length_span_m();
             let [low_pa, high_pa] = inverse.branch(length_m, direction)?.pressure_pa;
             let pressure_pa = low_pa + p * (high_pa - low_pa);
-            let force_n = inverse.model().force_n(pressure_pa, length_m, direction);
+            let force_n = inverse.model().settled_force_n(pressure_pa, length_m, direction);
             Some(Point { pressure_pa, length_m, direction, force_n })
         })
         .collect()

@@ -4,13 +4,16 @@
 //! p with F(p, L, s) = F,   p in the branch that rises at (L, s)
 //! ```
 //!
+//! `F` is the settled force: eq. 11, and of effects beyond it those of the muscle, as they are where it has long been
+//! and where it came slowly.
+//!
 //! # Design
 //! Whether the force rises everywhere is settled once, over the whole box with a margin for what lies between the
 //! cells; then a query costs a handful of evaluations of the model. Otherwise every query searches its branch,
 //! which costs about 150.
 
 use pam_core::artifact::inverse::{InverseDomain, Reach};
-use pam_core::force::ForceModel;
+use pam_core::effects::AugmentedModel;
 
 use crate::branch::{longest, rising, slope_n_per_pa};
 use crate::domain::InverseBox;
@@ -71,19 +74,20 @@ pub enum NoInverse {
     },
 }
 
-/// The inverse of a force model, by root finding on it.
+/// The inverse of a muscle's settled force, by root finding on it.
 #[derive(Debug, Clone)]
 pub struct ExactInverse {
-    model: ForceModel,
+    model: AugmentedModel,
     inverse_box: InverseBox,
     min_slope_n_per_pa: f64,
     rises_everywhere: bool,
 }
 
 impl ExactInverse {
-    /// The inverse of `model` inside a box; `min_slope_share` is the slope below which there is none, as a share
+    /// The inverse of `model` inside a box, without its instruments, fixture and events; `min_slope_share` is the slope below which there is none, as a share
     /// of the range of force over the range of pressure.
-    pub fn new(model: ForceModel, inverse_box: InverseBox, min_slope_share: f64) -> Self {
+    pub fn new(model: impl Into<AugmentedModel>, inverse_box: InverseBox, min_slope_share: f64) -> Self {
+        let model = model.into().of_the_muscle();
         let min_slope_n_per_pa = min_slope_share * inverse_box.force_span_n() / inverse_box.pressure_span_pa();
         let mut inverse = Self { model, inverse_box, min_slope_n_per_pa, rises_everywhere: false };
         inverse.rises_everywhere = inverse.smallest_slope_n_per_pa() >= MARGIN * min_slope_n_per_pa;
@@ -109,7 +113,7 @@ impl ExactInverse {
     }
 
     /// Model that is inverted.
-    pub fn model(&self) -> &ForceModel {
+    pub fn model(&self) -> &AugmentedModel {
         &self.model
     }
 
@@ -138,7 +142,7 @@ impl ExactInverse {
     pub fn branch(&self, length_m: f64, direction: f64) -> Option<Branch> {
         let [mut low_pa, mut high_pa] = self.uncut_pa(length_m, direction)?;
         let [lowest_n, highest_n] = self.inverse_box.force_n;
-        let force_n = |pressure_pa: f64| self.model.force_n(pressure_pa, length_m, direction);
+        let force_n = |pressure_pa: f64| self.model.settled_force_n(pressure_pa, length_m, direction);
         let (mut low_n, mut high_n) = (force_n(low_pa), force_n(high_pa));
         if low_n > highest_n || high_n < lowest_n {
             return None;
@@ -163,7 +167,7 @@ impl ExactInverse {
     }
 
     fn solve(&self, force_n: f64, length_m: f64, direction: f64, [low_pa, high_pa]: [f64; 2]) -> f64 {
-        let excess_n = |pressure_pa: f64| self.model.force_n(pressure_pa, length_m, direction) - force_n;
+        let excess_n = |pressure_pa: f64| self.model.settled_force_n(pressure_pa, length_m, direction) - force_n;
         root(excess_n, low_pa, high_pa, PRECISION * self.inverse_box.pressure_span_pa())
     }
 
@@ -181,7 +185,7 @@ impl ExactInverse {
             return Err(NoInverse::Direction { direction });
         }
         let Some(branch_pa) = self.uncut_pa(length_m, direction) else { return Err(NoInverse::Flat { length_m }) };
-        let range_n = branch_pa.map(|pressure_pa| self.model.force_n(pressure_pa, length_m, direction));
+        let range_n = branch_pa.map(|pressure_pa| self.model.settled_force_n(pressure_pa, length_m, direction));
         let range_n = [range_n[0].max(self.inverse_box.force_n[0]), range_n[1].min(self.inverse_box.force_n[1])];
         let slack_n = SLACK * self.inverse_box.force_span_n();
         if !(force_n >= range_n[0] - slack_n && force_n <= range_n[1] + slack_n) {
@@ -216,7 +220,8 @@ impl ExactInverse {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use pam_core::force::{BaseParameters, Form};
+    use pam_core::effects::{Term, effect};
+    use pam_core::force::{BaseParameters, ForceModel, Form};
     use pam_core::muscle::Muscle;
 
     fn muscle() -> Muscle {
@@ -280,7 +285,7 @@ pub(crate) mod tests {
                     for share in [0.0, 0.2, 0.7, 1.0] {
                         let [low_pa, high_pa] = branch.pressure_pa;
                         let pressure_pa = low_pa + share * (high_pa - low_pa);
-                        let force_n = inverse.model().force_n(pressure_pa, length_m, direction);
+                        let force_n = inverse.model().settled_force_n(pressure_pa, length_m, direction);
                         let found_pa = inverse.pressure_pa(force_n, length_m, direction).unwrap();
                         assert!((found_pa - pressure_pa).abs() < 1e-2, "{length_m} {direction}: {found_pa}");
                     }
@@ -301,7 +306,7 @@ pub(crate) mod tests {
         let at = |direction| inverse.pressure_pa(33.5, 0.2255, direction).unwrap();
         // Friction both ways over the slope of the force.
         let slope = slope_n_per_pa(inverse.model(), at(0.0), 0.2255, 0.0, 5e5);
-        let friction_n = -inverse.model().terms(at(0.0), 0.2255, 1.0).friction_n;
+        let friction_n = -inverse.model().base().terms(at(0.0), 0.2255, 1.0).friction_n;
         let gap_pa = at(1.0) - at(-1.0);
         assert!((gap_pa - 2.0 * friction_n / slope).abs() < 0.01 * gap_pa && gap_pa > 3e3, "{gap_pa}");
     }
@@ -321,5 +326,43 @@ pub(crate) mod tests {
         // Pulled beyond the strands' length there is no force at all.
         let stretched = ExactInverse::new(nominal(), InverseBox { length_m: [0.211, 0.4], ..BOX }, 0.05);
         assert!(matches!(stretched.pressure_pa(100.0, 0.35, 1.0), Err(NoInverse::Flat { .. })));
+    }
+
+    /// The nominal muscle behind a threshold of 40 kPa, with a gauge that drifts.
+    fn with_threshold() -> AugmentedModel {
+        let term = |id: &str, shape: &[f64], amplitudes: &[f64]| Term {
+            effect: effect(id).unwrap(),
+            shape: shape.to_vec(),
+            amplitudes: amplitudes.to_vec(),
+        };
+        let drift = term("force-drift", &[30.0], &[5.0, 5.0]);
+        AugmentedModel::new(nominal(), vec![term("threshold-pressure", &[4e4], &[]), drift])
+    }
+
+    #[test]
+    fn a_threshold_asks_for_its_pressure_on_top() {
+        let (plain, behind) = (nominal_inverse(), ExactInverse::new(with_threshold(), BOX, 0.05));
+        assert!(!behind.rises_everywhere());
+        for (force_n, length_m, direction) in [(300.0, 0.24, 1.0), (500.0, 0.26, -1.0)] {
+            let [expected_pa, found_pa] =
+                [&plain, &behind].map(|inverse| inverse.pressure_pa(force_n, length_m, direction).unwrap());
+            // h(p) = p_e + h(0), turned around.
+            let (width_pa, threshold_pa) = (1e4_f64, 4e4_f64);
+            let vented_pa = 0.5 * (threshold_pa.hypot(width_pa) - threshold_pa);
+            let hinge_pa = expected_pa + vented_pa;
+            let excess_pa = hinge_pa - width_pa * width_pa / (4.0 * hinge_pa);
+            assert!((found_pa - threshold_pa - excess_pa).abs() < 1.0, "{found_pa}");
+        }
+    }
+
+    #[test]
+    fn effects_of_size_zero_change_nothing() {
+        let zero = Term { effect: effect("load-dependent-friction").unwrap(), shape: vec![], amplitudes: vec![0.0] };
+        let augmented = ExactInverse::new(AugmentedModel::new(nominal(), vec![zero]), BOX, 0.05);
+        for (force_n, length_m, direction) in [(100.0, 0.22, 1.0), (300.0, 0.24, 0.2), (500.0, 0.26, -1.0)] {
+            let [expected_pa, found_pa] = [&nominal_inverse(), &augmented]
+                .map(|inverse| inverse.pressure_pa(force_n, length_m, direction).unwrap());
+            assert_eq!(found_pa.to_bits(), expected_pa.to_bits());
+        }
     }
 }

@@ -32,7 +32,7 @@ pub fn judge(network: &InverseNetwork, exact: &ExactInverse, n: usize, seed: u64
             Judged {
                 point,
                 pressure_error_pa: answer.pressure_pa - pressure_pa,
-                force_error_n: exact.model().force_n(answer.pressure_pa, length_m, direction) - force_n,
+                force_error_n: exact.model().settled_force_n(answer.pressure_pa, length_m, direction) - force_n,
                 outside: answer.outside,
             }
         })

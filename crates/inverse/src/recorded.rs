@@ -58,6 +58,6 @@ fn point(inverse: &ExactInverse, pressure_pa: f64, length_m: f64, direction: f64
         return None;
     }
     let [low_pa, high_pa] = inverse.branch(length_m, direction)?.pressure_pa;
-    let force_n = inverse.model().force_n(pressure_pa, length_m, direction);
+    let force_n = inverse.model().settled_force_n(pressure_pa, length_m, direction);
     (low_pa..=high_pa).contains(&pressure_pa).then_some(Point { pressure_pa, length_m, direction, force_n })
 }

@@ -47,7 +47,7 @@ impl Prepared {
         seed: u64,
     ) -> Result<Self, InverseError> {
         let inverse_box = InverseBox::of(&model.domain)?;
-        let exact = ExactInverse::new(model.force_model(), inverse_box, config.min_slope_share);
+        let exact = ExactInverse::new(model.augmented_model(), inverse_box, config.min_slope_share);
         let shares = coverage(&exact);
         if shares.invertible_percent < LEAST_INVERTIBLE_PERCENT {
             return Err(InverseError::HardlyInvertible {

@@ -54,6 +54,21 @@ pub struct AugmentedMemory {
     memories: Vec<Box<dyn Memory>>,
     /// As long as the most amplitudes of a term.
     columns: Vec<f64>,
+    /// Whether a reading left nothing of changes of the last force.
+    is_cut: bool,
+}
+
+impl fmt::Debug for AugmentedMemory {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("AugmentedMemory").field("n_terms", &self.memories.len()).finish_non_exhaustive()
+    }
+}
+
+impl From<ForceModel> for AugmentedModel {
+    /// Eq. 11 and nothing beyond it.
+    fn from(base: ForceModel) -> Self {
+        Self::new(base, Vec::new())
+    }
 }
 
 impl AugmentedModel {
@@ -76,6 +91,16 @@ impl AugmentedModel {
         &self.base
     }
 
+    /// Whether nothing comes on top of it.
+    pub fn is_plain(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// The same terms on top of another eq. 11.
+    pub fn on(&self, base: ForceModel) -> Self {
+        Self { base, ..self.clone() }
+    }
+
     /// What comes on top of it.
     pub fn terms(&self) -> &[Term] {
         &self.terms
@@ -88,12 +113,16 @@ impl AugmentedModel {
         AugmentedMemory {
             memories: self.terms.iter().map(|term| term.effect.start(muscle, &term.shape)).collect(),
             columns: vec![0.0; n_columns],
+            is_cut: false,
         }
     }
 
     /// Force, in N, where the muscle has long been and where it came slowly in `direction` (+1 contracting, -1
     /// extending, 0 neither).
     pub fn settled_force_n(&self, pressure_pa: f64, length_m: f64, direction: f64) -> f64 {
+        if self.is_plain() {
+            return self.base.force_n(pressure_pa, length_m, direction);
+        }
         let settled = Moment::settled(self.base.muscle(), pressure_pa, length_m, direction);
         let result_n = |force_n| self.start().force_n(self, Moment { force_n, ..settled });
         if !self.terms.iter().any(|term| term.effect.role() == Role::Sees) {
@@ -115,9 +144,30 @@ impl AugmentedModel {
         force_n
     }
 
+    /// By how much the channels of pressure and length are late behind the force, in s.
+    pub fn delays_s(&self) -> [f64; 2] {
+        let delays = self.terms.iter().map(|term| term.effect.delays_s(&term.shape));
+        delays.fold([0.0; 2], |sum, delays| [sum[0] + delays[0], sum[1] + delays[1]])
+    }
+
     /// The same muscle without instruments, fixture and events.
     pub fn of_the_muscle(&self) -> Self {
-        let terms = self.terms.iter().filter(|term| term.effect.kind() == Kind::Muscle).cloned().collect();
+        self.with(|kind| kind == Kind::Muscle)
+    }
+
+    /// Ids of what [`of_the_muscle`](Self::of_the_muscle) leaves out.
+    pub fn beside_the_muscle(&self) -> Vec<&'static str> {
+        let beside = self.terms.iter().filter(|term| term.effect.kind() != Kind::Muscle);
+        beside.map(|term| term.effect.page().id).collect()
+    }
+
+    /// The same without events, which happened once and in no other recording.
+    pub fn without_events(&self) -> Self {
+        self.with(|kind| kind != Kind::Event)
+    }
+
+    fn with(&self, wanted: impl Fn(Kind) -> bool) -> Self {
+        let terms = self.terms.iter().filter(|term| wanted(term.effect.kind())).cloned().collect();
         Self::new(self.base.clone(), terms)
     }
 }
@@ -150,7 +200,17 @@ impl AugmentedMemory {
                 }
             }
         }
-        self.memories.iter_mut().fold(force_n, |force_n, memory| memory.reads(force_n))
+        self.is_cut = false;
+        for memory in &mut self.memories {
+            self.is_cut |= memory.cuts(force_n);
+            force_n = memory.reads(force_n);
+        }
+        force_n
+    }
+
+    /// Whether the last force was cut: a reading leaves nothing of changes of it.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
     }
 }
 
@@ -303,6 +363,8 @@ mod tests {
         );
         let muscle = model.of_the_muscle();
         let ids: Vec<&str> = muscle.terms().iter().map(|term| term.effect.page().id).collect();
-        assert_eq!(ids, ["pressure-lag"]);
+        assert_eq!(ids, ["slack", "pressure-lag"]);
+        assert_eq!(model.beside_the_muscle(), ["force-drift", "force-step"]);
+        assert_eq!(model.without_events().terms().len(), 3);
     }
 }

@@ -26,7 +26,7 @@ impl Effect for Slack {
     }
 
     fn kind(&self) -> Kind {
-        Kind::Fixture
+        Kind::Muscle
     }
 
     fn shape(&self) -> &'static [Shape] {
