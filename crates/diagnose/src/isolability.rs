@@ -1,0 +1,182 @@
+//! What recordings could tell apart at all, before anything is blamed.
+//!
+//! Every effect of the catalogue is put into the fitted model at a typical size, and what a refit of the base parameters
+//! absorbs of its force is taken away. How much is left says whether the recordings show the effect; the cosine between
+//! what two effects leave says whether they tell them apart. An effect that comes in several forms (a delay of the pressure
+//! or of the length, damping with or without pressure, a short or a long memory) counts with the form that is most like the
+//! other effect: near 1 there is a form of each that cannot be told from one of the other.
+//!
+//! Typical sizes are the middle of the ranges that the pages of the effects give, which come from the same sources.
+
+use pam_core::artifact::diagnosis::Isolability;
+use pam_core::effects::{CATALOGUE, Effect, effect};
+use rayon::prelude::*;
+
+use crate::hypothesis::Guess;
+use crate::sheet::Ground;
+use crate::state::{Setting, State};
+use crate::tangent::{Tangent, dot, norm};
+
+/// Instants that are compared, at most; memories run over all of them.
+const MOST_ROWS: usize = 6000;
+/// Standard errors that a residual must reach to be seen.
+const STANDARD_ERRORS: f64 = 3.0;
+/// Share of the noise that it must reach besides: nothing smaller is worth a name, and the noise of the channels in the
+/// columns of an effect reaches this by itself where the effect has nothing to act on.
+const LEAST_SHARE_OF_NOISE: f64 = 0.2;
+
+/// An effect at typical sizes: each shape with each amplitude alone is one form of it.
+struct Typical {
+    id: &'static str,
+    shapes: &'static [&'static [f64]],
+    amplitudes: &'static [f64],
+}
+
+/// SI. Shapes of `force-step` depend on the recordings; see [`shapes`].
+static TYPICAL: [Typical; 22] = [
+    Typical { id: "channel-delay", shapes: &[&[0.02, 0.0], &[0.0, 0.02], &[0.02, 0.02]], amplitudes: &[] },
+    Typical { id: "pressure-gauge-hysteresis", shapes: &[&[1e4]], amplitudes: &[2e3] },
+    // 1 N per hour and 2 N.
+    Typical { id: "force-drift", shapes: &[&[120.0]], amplitudes: &[1.0 / 3600.0, 2.0] },
+    // 100 N/mm.
+    Typical { id: "series-compliance", shapes: &[&[1e-5]], amplitudes: &[] },
+    Typical { id: "inertia", shapes: &[&[]], amplitudes: &[0.5] },
+    Typical { id: "slack", shapes: &[&[0.0]], amplitudes: &[] },
+    Typical { id: "pressure-lag", shapes: &[&[0.06]], amplitudes: &[] },
+    Typical { id: "threshold-pressure", shapes: &[&[3e4]], amplitudes: &[] },
+    Typical { id: "end-taper", shapes: &[&[]], amplitudes: &[1.0] },
+    Typical { id: "braid-lockup", shapes: &[&[0.2, 0.008]], amplitudes: &[1e4] },
+    Typical { id: "presliding-hysteresis", shapes: &[&[1e-3]], amplitudes: &[] },
+    Typical { id: "rubber-hysteresis", shapes: &[&[2e-3]], amplitudes: &[5.0] },
+    // Half of an f' of 1.2e-3.
+    Typical { id: "stribeck", shapes: &[&[5e-3]], amplitudes: &[6e-4] },
+    Typical { id: "rate-dependent-hysteresis", shapes: &[&[3e-4]], amplitudes: &[1e-4] },
+    Typical { id: "load-dependent-friction", shapes: &[&[]], amplitudes: &[0.03] },
+    Typical { id: "viscous-damping", shapes: &[&[]], amplitudes: &[100.0, 100.0] },
+    Typical { id: "viscoelastic-relaxation", shapes: &[&[3.0]], amplitudes: &[0.1, 0.1] },
+    Typical { id: "pressure-creep", shapes: &[&[3.0]], amplitudes: &[0.025, 0.025] },
+    Typical { id: "mullins-softening", shapes: &[&[0.03]], amplitudes: &[0.06] },
+    Typical { id: "thermal-softening", shapes: &[&[400.0]], amplitudes: &[0.1] },
+    Typical { id: "fatigue-wear", shapes: &[&[0.5], &[1.0]], amplitudes: &[0.02] },
+    Typical { id: "force-step", shapes: &[], amplitudes: &[2.0] },
+];
+
+/// What the recordings of `setting` could tell apart on top of `state`, where noise of `noise_n` (root mean square)
+/// amounts to `n_independent` instants.
+pub fn isolability(setting: &Setting<'_>, state: &State, noise_n: f64, n_independent: f64) -> Isolability {
+    let track = setting.track;
+    let usable: Vec<usize> = (0..track.n()).filter(|&at| track.counted[at] && !state.cut[at]).collect();
+    let stride = usable.len().div_ceil(MOST_ROWS).max(1);
+    let rows = usable.into_iter().step_by(stride).map(|at| (at, 1.0)).collect();
+    let tangent = Tangent::of(setting, state, &state.sheet, rows);
+    let jobs: Vec<(usize, Guess)> = CATALOGUE
+        .iter()
+        .enumerate()
+        .flat_map(|(index, &effect)| {
+            shapes(setting, effect).into_iter().map(move |shape| (index, Guess { effect, shape }))
+        })
+        .collect();
+    // Each form with what is left of it, in the order of the catalogue.
+    let forms: Vec<(usize, Vec<f64>)> = jobs
+        .par_iter()
+        .flat_map_iter(|(index, guess)| {
+            left_of_forms(setting, state, &tangent, guess).into_iter().map(move |left| (*index, left))
+        })
+        .collect();
+    let sizes: Vec<f64> = forms.iter().map(|(_, left)| norm(left)).collect();
+    let limit_n = noise_n * (STANDARD_ERRORS / n_independent.max(1.0).sqrt()).max(LEAST_SHARE_OF_NOISE);
+    let n = CATALOGUE.len();
+    let mut visible_n = vec![0.0; n];
+    let mut cosine = vec![vec![0.0; n]; n];
+    for ((index, _), size) in forms.iter().zip(&sizes) {
+        visible_n[*index] = f64::max(visible_n[*index], *size);
+    }
+    let seen: Vec<usize> = (0..forms.len()).filter(|&form| sizes[form] > limit_n).collect();
+    let pairs: Vec<(usize, usize)> = seen
+        .iter()
+        .enumerate()
+        .flat_map(|(position, &left)| seen[position + 1..].iter().map(move |&right| (left, right)))
+        .filter(|&(left, right)| forms[left].0 != forms[right].0)
+        .collect();
+    let cosines: Vec<f64> = pairs
+        .par_iter()
+        .map(|&(left, right)| (dot(&forms[left].1, &forms[right].1) / (sizes[left] * sizes[right])).abs().min(1.0))
+        .collect();
+    for ((left, right), found) in pairs.into_iter().zip(cosines) {
+        let (i, j) = (forms[left].0, forms[right].0);
+        cosine[i][j] = f64::max(cosine[i][j], found);
+        cosine[j][i] = cosine[i][j];
+    }
+    for (index, row) in cosine.iter_mut().enumerate() {
+        row[index] = 1.0;
+    }
+    Isolability { ids: CATALOGUE.iter().map(|effect| effect.page().id.to_owned()).collect(), visible_n, cosine }
+}
+
+/// Typical shapes of an effect.
+fn shapes(setting: &Setting<'_>, effect: &'static dyn Effect) -> Vec<Vec<f64>> {
+    let id = effect.page().id;
+    if id == "force-step" {
+        // Halfway through the longest recording.
+        let end_s = |range: &std::ops::Range<usize>| {
+            range.clone().last().map_or(0.0, |at| setting.track.instants[at].moment.time_s)
+        };
+        let longest = setting
+            .track
+            .recordings
+            .iter()
+            .enumerate()
+            .max_by(|left, right| end_s(left.1).total_cmp(&end_s(right.1)).then(right.0.cmp(&left.0)));
+        return longest.map(|(index, range)| vec![index as f64, 0.5 * end_s(range)]).into_iter().collect();
+    }
+    match typical(id) {
+        Some(typical) => typical.shapes.iter().map(|shape| shape.to_vec()).collect(),
+        None => vec![effect.shape().iter().map(|shape| shape.grid[shape.grid.len() / 2]).collect()],
+    }
+}
+
+fn typical(id: &str) -> Option<&'static Typical> {
+    TYPICAL.iter().find(|typical| typical.id == id)
+}
+
+/// What a refit leaves of each form of `guess`.
+fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess: &Guess) -> Vec<Vec<f64>> {
+    let ground = Ground { track: setting.track, columns: setting.columns };
+    if guess.only_adds() {
+        let k = guess.amplitudes().len();
+        let columns = ground.more_columns(&state.sheet, guess, &state.model);
+        let sizes = typical(guess.id()).map_or(&[][..], |typical| typical.amplitudes);
+        return (0..k)
+            .map(|column| {
+                let size = sizes.get(column).copied().unwrap_or(guess.amplitudes()[column].range.1);
+                tangent.left_of(|row| size * columns[row * k + column])
+            })
+            .collect();
+    }
+    let before_n = force_n(setting, state, &state.guesses, &state.sheet);
+    let mut guesses = state.guesses.clone();
+    guesses.push(guess.clone());
+    let sheet = ground.sheet(&guesses, &state.model);
+    let after_n = force_n(setting, state, &guesses, &sheet);
+    vec![tangent.left_of(|row| after_n[row] - before_n[row])]
+}
+
+/// Force of `guesses` with the weights of `state`, which an effect without amplitudes may have been added to.
+fn force_n(setting: &Setting<'_>, state: &State, guesses: &[Guess], sheet: &crate::sheet::Sheet) -> Vec<f64> {
+    let mut memories: Vec<_> = guesses.iter().map(|guess| guess.effect.start(setting.muscle, &guess.shape)).collect();
+    sheet
+        .columns
+        .chunks_exact(sheet.width)
+        .map(|row| {
+            let force_n = row.iter().zip(&state.fit.weights).map(|(column, weight)| column * weight).sum();
+            memories.iter_mut().fold(force_n, |force_n, memory| memory.reads(force_n))
+        })
+        .collect()
+}
+
+/// Whether the id is one that isolability knows a typical size of.
+#[cfg(test)]
+fn is_known(id: &str) -> bool {
+    typical(id)
+        .is_some_and(|typical| effect(id).is_some_and(|effect| effect.amplitudes().len() == typical.amplitudes.len()))
+}
