@@ -149,7 +149,7 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
     let correlated = correlated_instants(&setting, &setting.residuals_n(state));
     let isolability =
         isolability(&setting, &found.base.state, sizes.floor_n, track.n_counted() as f64 / correlated.max(1.0));
-    let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model);
+    let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain);
     let terms = terms(state);
     let diagnosis = Diagnosis {
         verdict,

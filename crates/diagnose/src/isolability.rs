@@ -9,11 +9,12 @@
 //! Typical sizes are the middle of the ranges that the pages of the effects give, which come from the same sources.
 
 use pam_core::artifact::diagnosis::Isolability;
-use pam_core::effects::{CATALOGUE, Effect, effect};
+use pam_core::effects::{AugmentedModel, CATALOGUE, Effect, Role, Term};
 use rayon::prelude::*;
 
 use crate::hypothesis::Guess;
 use crate::sheet::Ground;
+use crate::shift::shifted;
 use crate::state::{Setting, State};
 use crate::tangent::{Tangent, dot, norm};
 
@@ -141,8 +142,8 @@ fn typical(id: &str) -> Option<&'static Typical> {
 
 /// What a refit leaves of each form of `guess`.
 fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess: &Guess) -> Vec<Vec<f64>> {
-    let ground = Ground { track: setting.track, columns: setting.columns };
     if guess.only_adds() {
+        let ground = Ground { track: setting.track, columns: setting.columns };
         let k = guess.amplitudes().len();
         let columns = ground.more_columns(&state.sheet, guess, &state.model);
         let sizes = typical(guess.id()).map_or(&[][..], |typical| typical.amplitudes);
@@ -153,30 +154,138 @@ fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess:
             })
             .collect();
     }
-    let before_n = force_n(setting, state, &state.guesses, &state.sheet);
-    let mut guesses = state.guesses.clone();
-    guesses.push(guess.clone());
-    let sheet = ground.sheet(&guesses, &state.model);
-    let after_n = force_n(setting, state, &guesses, &sheet);
+    let mut terms = terms(state);
+    let before_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms.clone()));
+    terms.push(Term { effect: guess.effect, shape: guess.shape.clone(), amplitudes: Vec::new() });
+    let after_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms));
     vec![tangent.left_of(|row| after_n[row] - before_n[row])]
 }
 
-/// Force of `guesses` with the weights of `state`, which an effect without amplitudes may have been added to.
-fn force_n(setting: &Setting<'_>, state: &State, guesses: &[Guess], sheet: &crate::sheet::Sheet) -> Vec<f64> {
-    let mut memories: Vec<_> = guesses.iter().map(|guess| guess.effect.start(setting.muscle, &guess.shape)).collect();
-    sheet
-        .columns
-        .chunks_exact(sheet.width)
-        .map(|row| {
-            let force_n = row.iter().zip(&state.fit.weights).map(|(column, weight)| column * weight).sum();
-            memories.iter_mut().fold(force_n, |force_n, memory| memory.reads(force_n))
+/// Effects of `state` with the values that were fitted.
+fn terms(state: &State) -> Vec<Term> {
+    let mut amplitudes = state.fit.amplitudes.iter().copied();
+    state
+        .guesses
+        .iter()
+        .map(|guess| Term {
+            effect: guess.effect,
+            shape: guess.shape.clone(),
+            amplitudes: amplitudes.by_ref().take(guess.amplitudes().len()).collect(),
         })
         .collect()
 }
 
-/// Whether the id is one that isolability knows a typical size of.
+/// Force of `model` at every instant.
+fn force_n(setting: &Setting<'_>, model: &AugmentedModel) -> Vec<f64> {
+    let delays_s = model.terms().iter().filter(|term| term.effect.role() == Role::Shift).fold([0.0; 2], |sum, term| {
+        let more_s = term.effect.delays_s(&term.shape);
+        [sum[0] + more_s[0], sum[1] + more_s[1]]
+    });
+    let track = setting.track;
+    let mut force_n = Vec::with_capacity(track.n());
+    for range in &track.recordings {
+        let mut memory = model.start();
+        let moments = shifted(&track.instants[range.clone()], delays_s);
+        force_n.extend(moments.into_iter().map(|moment| memory.force_n(model, moment)));
+    }
+    force_n
+}
+
 #[cfg(test)]
-fn is_known(id: &str) -> bool {
-    typical(id)
-        .is_some_and(|typical| effect(id).is_some_and(|effect| effect.amplitudes().len() == typical.amplitudes.len()))
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    fn of(protocols: &[&str]) -> Isolability {
+        let given = Given::of(protocols, &[]);
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let begin = std::time::Instant::now();
+        let found = isolability(&setting, &state, 0.3, 0.2 * given.track.n() as f64);
+        println!("{protocols:?}: {} instants, {:?}", given.track.n(), begin.elapsed());
+        for (index, id) in found.ids.iter().enumerate() {
+            let mut like: Vec<(f64, &str)> = (0..found.ids.len())
+                .filter(|&other| other != index)
+                .map(|other| (found.cosine[index][other], found.ids[other].as_str()))
+                .filter(|(cosine, _)| *cosine > 0.7)
+                .collect();
+            like.sort_by(|left, right| right.0.total_cmp(&left.0));
+            println!("  {id:26} {:8.3} N {like:.3?}", found.visible_n[index]);
+        }
+        found
+    }
+
+    fn cosine(found: &Isolability, left: &str, right: &str) -> f64 {
+        let index = |id: &str| found.ids.iter().position(|known| known == id).expect("an id");
+        found.cosine[index(left)][index(right)]
+    }
+
+    fn visible_n(found: &Isolability, id: &str) -> f64 {
+        found.visible_n[found.ids.iter().position(|known| known == id).expect("an id")]
+    }
+
+    #[test]
+    fn every_effect_has_a_typical_size_within_what_physics_allows() {
+        for effect in CATALOGUE {
+            let page = effect.page();
+            let typical = typical(page.id).expect(page.id);
+            assert_eq!(typical.amplitudes.len(), effect.amplitudes().len(), "{}", page.id);
+            for (size, amplitude) in typical.amplitudes.iter().zip(effect.amplitudes()) {
+                assert!((amplitude.range.0..=amplitude.range.1).contains(size), "{}", page.id);
+            }
+            for shape in typical.shapes {
+                assert_eq!(shape.len(), effect.shape().len(), "{}", page.id);
+                for (value, parameter) in shape.iter().zip(effect.shape()) {
+                    assert!((parameter.range.0..=parameter.range.1).contains(value), "{}", page.id);
+                }
+            }
+        }
+    }
+
+    /// PHYSICS.md B.4: damping and a late length are one group in an isobaric sweep (0.995).
+    #[test]
+    fn damping_and_a_late_channel_look_alike_in_an_isobaric_sweep() {
+        let sweep = of(&["length-chirp"]);
+        assert!(cosine(&sweep, "viscous-damping", "channel-delay") > 0.85);
+        assert!(cosine(&sweep, "viscous-damping", "presliding-hysteresis") < 0.7);
+        // An isometric sweep moves nothing that damping could act on.
+        let isometric = of(&["pressure-chirp"]);
+        assert!(visible_n(&isometric, "channel-delay") > 1.0);
+        assert!(visible_n(&isometric, "viscous-damping") < 1e-6);
+        assert_eq!(cosine(&isometric, "viscous-damping", "channel-delay"), 0.0);
+    }
+
+    #[test]
+    fn a_lag_and_a_delay_look_alike_in_slow_ramps() {
+        let ramps = of(&["isometric-ramps"]);
+        assert!(cosine(&ramps, "pressure-lag", "channel-delay") > 0.95);
+        assert!(cosine(&ramps, "pressure-lag", "presliding-hysteresis") < 0.7);
+    }
+
+    #[test]
+    fn a_matrix_is_symmetric_and_the_same_on_any_number_of_threads() {
+        let given = Given::of(&["multisine"], &[]);
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| isolability(&setting, &state, 0.3, 1000.0))
+        };
+        let found = run(1);
+        assert_eq!(found, run(2));
+        for (i, row) in found.cosine.iter().enumerate() {
+            assert_eq!(row[i], 1.0);
+            for (j, value) in row.iter().enumerate() {
+                assert_eq!(value.to_bits(), found.cosine[j][i].to_bits());
+                assert!((0.0..=1.0).contains(value));
+            }
+        }
+    }
+
+    #[test]
+    fn of_everything() {
+        of(&["isobaric-triangles"]);
+        of(&["multisine"]);
+        of(&["isobaric-triangles", "rate-ladder", "length-steps", "pressure-steps", "isometric-ramps"]);
+    }
 }
