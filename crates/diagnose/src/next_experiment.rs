@@ -489,7 +489,7 @@ mod tests {
 
     #[test]
     fn damping_and_a_late_length_ask_for_something_else_than_they_were_seen_in() {
-        let (experiment, ..) =
+        let (experiment, _, all) =
             between(&["rate-ladder"], ("viscous-damping", &[], &[50.0, 100.0]), ("channel-delay", &[0.0, 0.012]));
         // A locked length shows neither; the stiffness changes with pressure and length otherwise than damping does, which
         // takes fast and wide motion at several pressures to see.
@@ -500,11 +500,8 @@ mod tests {
     /// PHYSICS.md B.6: a delay of the force shows where damping does not act at all.
     #[test]
     fn damping_and_an_early_force_ask_for_a_pressure_chirp() {
-        let (experiment, ..) = between(
-            &["rate-ladder"],
-            ("viscous-damping", &[], &[50.0, 100.0]),
-            ("channel-delay", &[0.012, 0.012]),
-        );
+        let (experiment, ..) =
+            between(&["rate-ladder"], ("viscous-damping", &[], &[50.0, 100.0]), ("channel-delay", &[0.012, 0.012]));
         assert_eq!(experiment.protocol, "pressure-chirp");
     }
 
@@ -593,7 +590,9 @@ mod tests {
         let reach = reach(&domain(), &explanations[0].state, false);
         let all = separations(&setting, &PROTOCOLS, &reach, &explanations);
         println!("{:?}", begin.elapsed());
-        for protocol in &PROTOCOLS { println!("{} {}", protocol.name, Rehearsal::of(&protocol.takes(&reach), &reach).track.n()); }
+        for protocol in &PROTOCOLS {
+            println!("{} {}", protocol.name, Rehearsal::of(&protocol.takes(&reach), &reach).track.n());
+        }
         assert_eq!(all.len(), PROTOCOLS.len());
         assert!(of(&all, "length-steps").pairs_n[0] > 10.0 * of(&all, "pressure-chirp").pairs_n[0]);
     }
