@@ -64,6 +64,8 @@ pub struct Taken {
 
 /// Share of what is left of the mismatch that an effect must explain to be taken.
 const LEAST_SHARE: f64 = 0.1;
+/// Share of the whole mismatch that an effect must explain to be taken.
+const LEAST_OF_ALL: f64 = 0.03;
 /// Sum of `ln(without / with)` over held-out blocks that an effect must reach: as if one block were explained and nothing
 /// lost elsewhere.
 const LEAST_LOG_RATIO: f64 = 1.0;
@@ -99,7 +101,7 @@ pub fn search(
         for trial in &trials {
             floor_square = floor_square.min(trial.held_out.mean_square());
         }
-        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &best, floor_square, limits)) else {
+        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &best, &base, floor_square, limits)) else {
             break;
         };
         let Some(next) = settle(setting, &best, &chosen) else { break };
@@ -122,12 +124,16 @@ pub fn search(
 }
 
 /// Whether a trial gains more than chance and more than what does not matter.
-fn worth(trial: &Trial, best: &Judged, floor_square: f64, limits: &Limits) -> bool {
+fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits: &Limits) -> bool {
     let gained = best.held_out.mean_square() - trial.held_out.mean_square();
     let mismatch = best.held_out.mean_square() - floor_square;
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
-    gained > LEAST_SHARE * mismatch && gained > matters && trial.log_ratio > LEAST_LOG_RATIO
+    let whole = base.held_out.mean_square() - floor_square;
+    gained > LEAST_SHARE * mismatch
+        && gained > LEAST_OF_ALL * whole
+        && gained > matters
+        && trial.log_ratio > LEAST_LOG_RATIO
 }
 
 /// Probability that an improvement of held-out blocks is chance: a t-test on the log ratios of the blocks that it touches.

@@ -43,7 +43,18 @@ pub fn all(setting: &Setting<'_>, state: &State, before: &HeldOut, seen: &Seen, 
             shapes.into_iter().map(move |shape| (index, Guess { effect, shape }))
         })
         .collect();
-    let costs: Vec<Option<f64>> = jobs.par_iter().map(|(_, guess)| mean_square(setting, state, guess)).collect();
+    let residuals_n = setting.residuals_n(state);
+    let costs: Vec<Option<f64>> = jobs
+        .par_iter()
+        .map(|(_, guess)| {
+            if guess.effect.kind() != Kind::Event {
+                return mean_square(setting, state, guess);
+            }
+            let fit = setting.fit_more(state, guess)?;
+            let step_n = fit.amplitudes.last()?;
+            steps::is_sudden(setting, &residuals_n, &guess.shape, *step_n).then_some(fit.mean_square)
+        })
+        .collect();
     let mut best: Vec<Option<(f64, &Guess)>> = vec![None; candidates.len()];
     for ((index, guess), cost) in jobs.iter().zip(costs) {
         if let Some(cost) = cost
