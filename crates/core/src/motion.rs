@@ -70,7 +70,8 @@ pub fn walk(
             let row = segment.start + at;
             let (step_s, pressure_step_pa) = last
                 .map_or((0.0, 0.0), |(time_s, pressure_pa)| (rows.time_s[at] - time_s, pressure.value - pressure_pa));
-            if still.at(at) {
+            let resting = still.at(at);
+            if resting {
                 by_pressure_m += SLIDE_M_PER_PA * pressure_step_pa;
             }
             last = Some((rows.time_s[at], pressure.value));
@@ -88,6 +89,7 @@ pub fn walk(
                     length_m: choose(length.value, rows.length_m[at]),
                     contraction_ratio: (rest_length_m - length.value) / rest_length_m,
                     speed_m_per_s: -length.slope,
+                    slide_speed_m_per_s: if resting { SLIDE_M_PER_PA * pressure.slope } else { -length.slope },
                     acceleration_m_per_s2: -length.curvature,
                     direction: direction.sign(row),
                     slide_m: rest_length_m - length.value + by_pressure_m,

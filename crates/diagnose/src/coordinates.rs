@@ -2,7 +2,6 @@
 
 use pam_core::artifact::diagnosis::Coordinate;
 
-use crate::sheet::Sheet;
 use crate::track::Track;
 
 /// Values of the coordinates, one vector per coordinate in the order of [`Coordinate::ALL`].
@@ -14,8 +13,8 @@ pub struct Coordinates {
 }
 
 impl Coordinates {
-    /// Coordinates of `track`; `sheet` is that of the base model.
-    pub fn of(track: &Track, sheet: &Sheet) -> Self {
+    /// Coordinates of `track`.
+    pub fn of(track: &Track) -> Self {
         let moments = || track.instants.iter().map(|instant| &instant.moment);
         let speed_limit = moving_above(moments().map(|moment| moment.speed_m_per_s.abs()).collect(), 3e-4);
         let rate_limit = moving_above(moments().map(|moment| moment.pressure_rate_pa_per_s.abs()).collect(), 3e3);
@@ -47,7 +46,7 @@ impl Coordinates {
                     (moment.slide_m - turn_m).abs(),
                     moment.time_s - last_move_s,
                     1.0 + (flips / 2) as f64,
-                    sheet.base[at].static_force_n,
+                    track.instants[at].force_n,
                 ];
                 for (column, value) in values.iter_mut().zip(row) {
                     column.push(value);

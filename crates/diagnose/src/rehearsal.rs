@@ -109,6 +109,11 @@ impl Rehearsal {
                 length_m: here.2,
                 contraction_ratio: muscle.contraction_ratio(here.2),
                 speed_m_per_s: -rate(before.2, after.2),
+                slide_speed_m_per_s: if point.rests {
+                    SLIDE_M_PER_PA * rate(before.1, after.1)
+                } else {
+                    -rate(before.2, after.2)
+                },
                 acceleration_m_per_s2: -(after.2 - 2.0 * here.2 + before.2) / HALF_CORNER_S.powi(2),
                 direction: point.direction,
                 slide_m: muscle.rest_length_m - here.2 + slide_by_pressure_m,

@@ -33,6 +33,7 @@ impl History {
                     step_s,
                     pressure_rate_pa_per_s: (pressure_pa - last.pressure_pa) / step_s,
                     speed_m_per_s,
+                    slide_speed_m_per_s: speed_m_per_s,
                     acceleration_m_per_s2: (speed_m_per_s - last.speed_m_per_s) / step_s,
                     force_n: last.force_n,
                     ..settled

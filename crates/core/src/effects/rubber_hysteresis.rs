@@ -110,7 +110,11 @@ mod tests {
     use crate::muscle::tests::nominal;
 
     fn moved(contracted_m: f64) -> Moment {
-        Moment { step_s: 0.1, slide_m: still().slide_m + contracted_m, ..still() }
+        Moment {
+            step_s: 0.1,
+            contraction_ratio: still().contraction_ratio + contracted_m / nominal().rest_length_m,
+            ..still()
+        }
     }
 
     #[test]
