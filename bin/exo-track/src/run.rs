@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use pam_cli::{Console, Output, Verdict, commit_all};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool, sha256_hex};
-use pam_core::force::ForceModel;
+use pam_core::effects::AugmentedModel;
 use pam_exo::artifact::{ArmMetrics, MetricsArtifact, SCHEMA, TrialMetrics, paper};
 use pam_exo::config::{LiftConfig, LiftPlan};
 use pam_exo::inverse::{ExactInverse, Inverse};
@@ -28,10 +28,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let (model, model_input) = read_model(&args.model, InputRole::Model)?;
     let mut inputs = vec![config_input, model_input];
     let plant = args.plant.as_deref().map(|path| read_model(path, InputRole::Plant)).transpose()?;
-    let force = model.force_model();
+    let force = of_the_muscle(&console, &args.model, &model);
     let inverse = read_inverse(args, &plan, &force, &mut inputs)?;
     let plant_artifact = plant.as_ref().map_or(&model, |(artifact, _)| artifact);
-    let plant_force = plant_artifact.force_model();
+    let plant_force = match (&args.plant, &plant) {
+        (Some(path), Some((artifact, _))) => of_the_muscle(&console, path, artifact),
+        _ => force.clone(),
+    };
     inputs.extend(plant.iter().map(|(_, input)| input.clone()));
     let simulation = Simulation { plan: &plan, model: &force, inverse: inverse.as_ref(), plant: &plant_force };
     check_reach(&simulation).with_context(|| args.config.display().to_string())?;
@@ -150,11 +153,25 @@ fn read_model(path: &Path, role: InputRole) -> anyhow::Result<(ModelArtifact, In
     Ok((artifact, Input { path: path.display().to_string(), sha256, role }))
 }
 
+/// The model of an artifact with the effects that a muscle takes along into a lift.
+fn of_the_muscle(console: &Console, path: &Path, artifact: &ModelArtifact) -> AugmentedModel {
+    let model = artifact.augmented_model();
+    let beside = model.beside_the_muscle();
+    if !beside.is_empty() {
+        console.note(format!(
+            "{}: left out of the lift, as they are not the muscle's: {}",
+            path.display(),
+            beside.join(", ")
+        ));
+    }
+    model.of_the_muscle()
+}
+
 /// The inverse in a file, or that by root finding.
 fn read_inverse(
     args: &Args,
     plan: &LiftPlan,
-    force: &ForceModel,
+    force: &AugmentedModel,
     inputs: &mut Vec<Input>,
 ) -> anyhow::Result<Box<dyn Inverse>> {
     let Some(path) = &args.inverse else {

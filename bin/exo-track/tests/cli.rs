@@ -109,7 +109,7 @@ fn what_no_lift_has_is_refused_by_name() {
     insta::assert_snapshot!(refused(&[("period_ms = 10.0", "period_ms = 10.5")]), @"error: lift.toml: controller.period_ms = 10.5 is no multiple of plant.step_ms = 1; choose 10 or 11, or another step");
     insta::assert_snapshot!(refused(&[("duration_s = 5.0", "duration_s = 5.003")]), @"error: lift.toml: reference.duration_s = 5.003 is no multiple of controller.period_ms / 1000 = 0.01; choose 5 or 5.01, or another step");
     insta::assert_snapshot!(refused(&[("highest_kpa = 500.0", "highest_kpa = 700.0")]), @"error: lift.toml: valve.highest_kpa = 700 is not below valve.supply_kpa = 600");
-    insta::assert_snapshot!(refused(&[("kp_per_s2", "kp_per_s")]), @"error: lift.toml:66:1: unknown field `kp_per_s`, expected one of `period_ms`, `kp_per_s2`, `kd_per_s`, `observer_rad_per_s`, `length`, `integral_per_s3`, `disturbance_observer`, `lag_compensation`, `valve_lag_ms`, `pressure_loop_ms`, `hysteresis_aware`, `presliding_mm`, `payload_estimation`");
+    insta::assert_snapshot!(refused(&[("kp_per_s2", "kp_per_s")]), @"error: lift.toml:66:1: unknown field `kp_per_s`, expected one of `period_ms`, `kp_per_s2`, `kd_per_s`, `observer_rad_per_s`, `length`, `integral_per_s3`, `disturbance_observer`, `lag_compensation`, `valve_lag_ms`, `pressure_loop_ms`, `hysteresis_aware`, `presliding_mm`, `effect_memory`, `payload_estimation`");
     insta::assert_snapshot!(refused(&[("\"proportional\"", "\"poppet\"")]), @"error: lift.toml:46:8: unknown variant `poppet`, expected `proportional` or `on-off`");
 }
 
@@ -153,6 +153,66 @@ fn an_artifact_of_another_kind_is_refused() {
         assert!(text.contains("other.json: schema is \"pam-diagnosis/1\"") && text.contains(expected), "{text}");
         assert!(!folder.path().join("track.csv").exists());
     }
+}
+
+/// The model with an effect of one parameter.
+fn with_effect(folder: &Path, id: &str, name: &str, value: f64, unit: &str) {
+    let text = std::fs::read_to_string(MODEL).unwrap();
+    let mut model: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let parameter = serde_json::json!({"name": name, "value": value, "unit": unit, "stderr": null, "status": "fitted"});
+    model["effects"] = serde_json::json!([{"id": id, "parameters": [parameter]}]);
+    std::fs::write(folder.join("effect.json"), model.to_string()).unwrap();
+}
+
+/// Mean absolute angle error of the left arm, in rad.
+fn mae_rad(folder: &Path, more: &[&str]) -> f64 {
+    let output = run(folder, &[&["--out", "track.csv", "--metrics", "metrics.json"], more].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let metrics: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.join("metrics.json")).unwrap()).unwrap();
+    metrics["left"]["errors"]["angle_rad"]["mae"].as_f64().unwrap()
+}
+
+#[test]
+fn a_concealed_threshold_costs_tracking_and_a_model_that_knows_it_gets_it_back() {
+    let folder = folder(&[]);
+    let base_rad = mae_rad(folder.path(), &[]);
+    with_effect(folder.path(), "threshold-pressure", "threshold_pa", 4e4, "Pa");
+    let concealed_rad = mae_rad(folder.path(), &["--plant", "effect.json"]);
+    let output = Command::new(env!("CARGO_BIN_EXE_exo-track"))
+        .current_dir(folder.path())
+        .args(["--config", "lift.toml", "--model", "effect.json", "--out", "track.csv", "--metrics", "metrics.json"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metrics: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("metrics.json")).unwrap()).unwrap();
+    let known_rad = metrics["left"]["errors"]["angle_rad"]["mae"].as_f64().unwrap();
+    assert!(concealed_rad > 5.0 * base_rad && known_rad < 2.0 * base_rad, "{base_rad} {concealed_rad} {known_rad}");
+}
+
+#[test]
+fn an_effect_that_is_not_the_muscle_s_stays_at_the_bench() {
+    let folder = folder(&[]);
+    let base_rad = mae_rad(folder.path(), &[]);
+    with_effect(folder.path(), "series-compliance", "compliance_m_per_n", 1e-6, "m/N");
+    assert_eq!(mae_rad(folder.path(), &["--plant", "effect.json"]).to_bits(), base_rad.to_bits());
+    let output = run(folder.path(), &["--out", "track.csv", "--plant", "effect.json"]);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        text.contains("effect.json: left out of the lift, as they are not the muscle's: series-compliance"),
+        "{text}"
+    );
+}
+
+#[test]
+fn an_effect_that_the_catalogue_does_not_have_is_refused() {
+    let folder = folder(&[]);
+    with_effect(folder.path(), "gearbox", "ratio", 2.0, "1");
+    let output = run(folder.path(), &["--out", "track.csv", "--plant", "effect.json"]);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(text.contains("effect.json: effect \"gearbox\" is unknown; the nearest are"), "{text}");
 }
 
 /// What a lift is rejected for, one line for each arm and trouble; its track is there to look at.

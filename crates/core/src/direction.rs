@@ -135,9 +135,9 @@ fn marks_of(
     let shortening: Vec<f64> = length_m.iter().map(|length| -length).collect();
     let contraction = moving_average(&shortening, half);
     play(&contraction, &shortening, thresholds.length_m, half, carried, &mut marks);
-    let mut pressure: Option<Vec<f64>> = None;
-    for still in standstills(time_s, &contraction, thresholds.length_m) {
-        let pressure = pressure.get_or_insert_with(|| moving_average(pressure_pa, half));
+    let pressure = moving_average(pressure_pa, half);
+    let resting = standstills(time_s, &contraction, thresholds.length_m);
+    for still in resting.iter().cloned() {
         let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried };
         // A standstill in which the pressure rests as well keeps what the length says.
         if range(&pressure[still.clone()]) > thresholds.pressure_pa {
@@ -153,7 +153,56 @@ fn marks_of(
         }
     }
     fill_unknown(&mut marks);
+    let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
+    slow.doubt(&resting, thresholds, &mut marks);
     marks
+}
+
+/// Half of the window that a slow-down is measured against, in s.
+const LONG_S: f64 = 0.25;
+
+/// The same in rows; never shorter than twice the moving average.
+fn long_window(period_s: f64, half: usize) -> usize {
+    ((LONG_S / period_s).round() as usize).clamp(2 * half, 500)
+}
+
+/// Where a motion slows down so far that it may have turned for a moment without passing the threshold, or rests for
+/// less than a standstill while the pressure works against its direction: no channel tells the direction there.
+struct Slow<'a> {
+    contraction: &'a [f64],
+    pressure: &'a [f64],
+    half: usize,
+    long: usize,
+}
+
+impl Slow<'_> {
+    /// Unsettles such rows.
+    fn doubt(&self, resting: &[std::ops::Range<usize>], thresholds: Thresholds, marks: &mut [i8]) {
+        let n = self.contraction.len();
+        if n <= 2 * self.long {
+            return;
+        }
+        // Five deviations of the raw channel are a threshold; a difference of two averages has this deviation.
+        let noise = thresholds.length_m / 5.0 * (2.0 / (2 * self.half + 1) as f64).sqrt();
+        let mut stills = resting.iter().peekable();
+        for row in self.long..n - self.long {
+            while stills.next_if(|still| still.end <= row).is_some() {}
+            if marks[row].abs() != 1 || stills.peek().is_some_and(|still| still.contains(&row)) {
+                continue;
+            }
+            let sign = f64::from(marks[row]);
+            let moved = |reach: usize| sign * (self.contraction[row + reach] - self.contraction[row - reach]);
+            let (near, far) = (moved(self.half), moved(self.long));
+            let doubtful = if far > 3.0 * noise {
+                near < 3.0 * noise && near / (self.half as f64) < 0.25 * far / self.long as f64
+            } else {
+                sign * (self.pressure[row + self.long] - self.pressure[row - self.long]) < -thresholds.pressure_pa
+            };
+            if doubtful {
+                marks[row] *= 2;
+            }
+        }
+    }
 }
 
 /// What moved neither way before the first motion takes the direction of that motion.

@@ -11,8 +11,10 @@ use crate::effects::Moment;
 use crate::effects::moment::SLIDE_M_PER_PA;
 use crate::recording::Recording;
 
-/// Half of the window of the parabola, in s; at least four samples and at most fifty to either side.
+/// Half of the window of the parabola that rates come from, in s; at least four samples and at most fifty to either side.
 pub const HALF_WINDOW_S: f64 = 0.04;
+/// The same for the values themselves, which need less smoothing than their rates.
+pub const HALF_VALUE_WINDOW_S: f64 = 0.02;
 
 /// One row of a recording with everything that effects need.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,18 +58,20 @@ pub fn walk(
         let rows = Rows::read(recording, segment.clone())?;
         let Some(&begin_s) = rows.time_s.first() else { continue };
         let origin_s = *first_s.get_or_insert(begin_s);
-        let window = Window::over(&rows.time_s);
+        let window = Window::over(&rows.time_s, HALF_WINDOW_S);
+        let near = Window::over(&rows.time_s, HALF_VALUE_WINDOW_S);
         let still = Still::of(&rows, &window, thresholds.length_m);
         let mut last: Option<(f64, f64)> = None;
         let mut by_pressure_m = 0.0;
         let mut at = 0;
         while at < rows.time_s.len() {
-            let [pressure, length, force] =
-                [&rows.pressure_pa, &rows.length_m, &rows.force_n].map(|channel| window.parabola(channel, at));
+            let [pressure, length, force] = [&rows.pressure_pa, &rows.length_m, &rows.force_n]
+                .map(|channel| Parabola { value: near.parabola(channel, at).value, ..window.parabola(channel, at) });
             let row = segment.start + at;
             let (step_s, pressure_step_pa) = last
                 .map_or((0.0, 0.0), |(time_s, pressure_pa)| (rows.time_s[at] - time_s, pressure.value - pressure_pa));
-            if still.at(at) {
+            let resting = still.at(at);
+            if resting {
                 by_pressure_m += SLIDE_M_PER_PA * pressure_step_pa;
             }
             last = Some((rows.time_s[at], pressure.value));
@@ -85,6 +89,7 @@ pub fn walk(
                     length_m: choose(length.value, rows.length_m[at]),
                     contraction_ratio: (rest_length_m - length.value) / rest_length_m,
                     speed_m_per_s: -length.slope,
+                    slide_speed_m_per_s: if resting { SLIDE_M_PER_PA * pressure.slope } else { -length.slope },
                     acceleration_m_per_s2: -length.curvature,
                     direction: direction.sign(row),
                     slide_m: rest_length_m - length.value + by_pressure_m,
@@ -92,7 +97,7 @@ pub fn walk(
                 },
                 force_n,
                 settled: if smooth {
-                    let (from, to) = (at.saturating_sub(window.half), (at + window.half).min(rows.time_s.len() - 1));
+                    let (from, to) = (at.saturating_sub(near.half), (at + near.half).min(rows.time_s.len() - 1));
                     direction.is_settled(segment.start + from)
                         && direction.is_settled(row)
                         && direction.is_settled(segment.start + to)
@@ -158,10 +163,10 @@ struct Window {
 }
 
 impl Window {
-    fn over(time_s: &[f64]) -> Self {
+    fn over(time_s: &[f64], half_s: f64) -> Self {
         let n_rows = time_s.len();
         let period_s = if n_rows > 1 { (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1) as f64 } else { 1.0 };
-        let half = ((HALF_WINDOW_S / period_s).round() as usize).clamp(4, 50);
+        let half = ((half_s / period_s).round() as usize).clamp(4, 50);
         let h = half as f64;
         let sum2 = h * (h + 1.0) * (2.0 * h + 1.0) / 3.0;
         let sum4 = sum2 * (3.0 * h * h + 3.0 * h - 1.0) / 5.0;
@@ -241,7 +246,7 @@ mod tests {
     fn a_parabola_is_found_exactly_up_to_the_ends() {
         let time_s: Vec<f64> = (0..60).map(|row| f64::from(row) * 0.005).collect();
         let channel: Vec<f64> = time_s.iter().map(|t| 3.0 - 2.0 * t + 5.0 * t * t).collect();
-        let window = Window::over(&time_s);
+        let window = Window::over(&time_s, HALF_WINDOW_S);
         for at in [0, 3, 30, 59] {
             let t = time_s[at];
             let found = window.parabola(&channel, at);

@@ -97,17 +97,20 @@ impl Muscle {
 pub struct Kinematics {
     rest_length_m: f64,
     strand_length_square_m2: f64,
-    /// `π n`.
-    pi_turns: f64,
+    /// `1 / (π n)` and its square: a division costs ten products.
+    per_pi_turns: f64,
+    per_pi_turns_square: f64,
 }
 
 impl Kinematics {
     /// Those of `muscle`.
     pub fn of(muscle: &Muscle) -> Self {
+        let per_pi_turns = 1.0 / (PI * muscle.turns());
         Self {
             rest_length_m: muscle.rest_length_m,
             strand_length_square_m2: muscle.strand_length_m().powi(2),
-            pi_turns: PI * muscle.turns(),
+            per_pi_turns,
+            per_pi_turns_square: per_pi_turns * per_pi_turns,
         }
     }
 
@@ -118,12 +121,12 @@ impl Kinematics {
 
     /// `D(L)`, in m; NaN where the strands are straight, that is at `L ≥ b_s`.
     pub fn diameter_m(&self, length_m: f64) -> f64 {
-        (self.strand_length_square_m2 - length_m * length_m).sqrt() / self.pi_turns
+        (self.strand_length_square_m2 - length_m * length_m).sqrt() * self.per_pi_turns
     }
 
     /// `dD/dL` at a length with its diameter, dimensionless and negative.
     pub fn diameter_slope(&self, length_m: f64, diameter_m: f64) -> f64 {
-        -length_m / (self.pi_turns * self.pi_turns * diameter_m)
+        -length_m * self.per_pi_turns_square / diameter_m
     }
 }
 

@@ -36,6 +36,8 @@ pub fn shifted(instants: &[Instant], delays_s: [f64; 2]) -> Vec<Moment> {
             moment.contraction_ratio =
                 left.contraction_ratio + share * (right.contraction_ratio - left.contraction_ratio);
             moment.speed_m_per_s = left.speed_m_per_s + share * (right.speed_m_per_s - left.speed_m_per_s);
+            moment.slide_speed_m_per_s =
+                left.slide_speed_m_per_s + share * (right.slide_speed_m_per_s - left.slide_speed_m_per_s);
             moment.acceleration_m_per_s2 =
                 left.acceleration_m_per_s2 + share * (right.acceleration_m_per_s2 - left.acceleration_m_per_s2);
             moment.direction = if share < 0.5 { left.direction } else { right.direction };

@@ -3,7 +3,6 @@
 use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::Moment;
 
-use crate::sheet::Sheet;
 use crate::track::Track;
 
 /// Values of the coordinates, one vector per coordinate in the order of [`Coordinate::ALL`].
@@ -15,8 +14,8 @@ pub struct Coordinates {
 }
 
 impl Coordinates {
-    /// Coordinates of `track`; `sheet` is that of the base model.
-    pub fn of(track: &Track, sheet: &Sheet) -> Self {
+    /// Coordinates of `track`.
+    pub fn of(track: &Track) -> Self {
         let limits = moving_limits(track.instants.iter().map(|instant| &instant.moment));
         let n = track.n();
         let mut values: [Vec<f64>; 8] = std::array::from_fn(|_| Vec::with_capacity(n));
@@ -35,7 +34,7 @@ impl Coordinates {
                     history.travel_m,
                     history.rest_s,
                     history.cycle,
-                    sheet.base[at].static_force_n,
+                    track.instants[at].force_n,
                 ];
                 for (column, value) in values.iter_mut().zip(row) {
                     column.push(value);

@@ -2,7 +2,8 @@
 
 use pam_core::artifact::ModelArtifact;
 use pam_core::artifact::diagnosis::{
-    Candidate, Coordinate, DiagnoseConfig, Evidence, Implausible, NamedEffect, Region, Verdict,
+    Candidate, Coordinate, DiagnoseConfig, Evidence, Implausible, Isolability, NamedEffect, NextExperiment, Region,
+    Verdict,
 };
 use pam_core::artifact::model::EffectEntry;
 use pam_core::effects::{AugmentedModel, Term};
@@ -14,7 +15,9 @@ use pam_identification::prepare::Prepared;
 use crate::base;
 use crate::check;
 use crate::error::DiagnoseError;
+use crate::isolability::isolability;
 use crate::joint::HeldOut;
+use crate::next_experiment::{Setpoints, next_experiment};
 use crate::regions::concentrated;
 use crate::search::{Found, Limits, chance, search};
 use crate::state::Setting;
@@ -62,6 +65,10 @@ pub struct Diagnosis {
     pub implausible: Vec<Implausible>,
     /// Everything that was weighed.
     pub candidates: Vec<Candidate>,
+    /// What the recordings could tell apart at all.
+    pub isolability: Isolability,
+    /// What to record next, with a path for the rig.
+    pub next_experiment: Option<(NextExperiment, Setpoints)>,
     /// Sizes that the verdict rests on.
     pub sizes: Sizes,
     /// Base model refitted to the estimation recordings.
@@ -139,6 +146,10 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
         Vec::new()
     };
     let state = &found.best.state;
+    let correlated = correlated_instants(&setting, &setting.residuals_n(state));
+    let isolability =
+        isolability(&setting, &found.base.state, sizes.floor_n, track.n_counted() as f64 / correlated.max(1.0));
+    let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain);
     let terms = terms(state);
     let diagnosis = Diagnosis {
         verdict,
@@ -149,6 +160,8 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
         unexplained,
         implausible: implausible(&setting, &found),
         candidates: candidates(&found),
+        isolability,
+        next_experiment,
         sizes,
         base: found.base.state.model.clone(),
         augmented: AugmentedModel::new(state.model.clone(), terms),

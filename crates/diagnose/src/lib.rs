@@ -1,7 +1,8 @@
 //! A model and recordings in; what physics was left out of the model, where, and what it buys, out.
 //!
 //! In reading order: [`track`] is the recordings on a common grid, [`sheet`] what a [`hypothesis`] makes of it, [`normal`]
-//! and [`joint`] fit base and effects together and judge them on held-out blocks.
+//! and [`joint`] fit base and effects together and judge them on held-out blocks. [`isolability`] says what the recordings
+//! could tell apart at all, [`next_experiment`] which one would tell more.
 
 pub mod artifact;
 pub mod base;
@@ -11,15 +12,20 @@ pub mod diagnose;
 pub mod error;
 pub mod explain;
 pub mod hypothesis;
+pub mod isolability;
 pub mod joint;
+pub mod next_experiment;
 pub mod normal;
+mod protocols;
 mod regions;
+mod rehearsal;
 pub mod search;
 pub mod sheet;
 mod shift;
 pub mod state;
 mod steps;
 pub mod structure;
+mod tangent;
 pub mod traces;
 pub mod track;
 pub mod trial;

@@ -1,5 +1,7 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 
+use std::collections::BTreeSet;
+
 use pam_core::effects::Seen;
 
 use crate::coordinates::Coordinates;
@@ -64,6 +66,8 @@ pub struct Taken {
 
 /// Share of what is left of the mismatch that an effect must explain to be taken.
 const LEAST_SHARE: f64 = 0.1;
+/// Share of the whole mismatch that an effect must explain to be taken.
+const LEAST_OF_ALL: f64 = 0.03;
 /// Sum of `ln(without / with)` over held-out blocks that an effect must reach: as if one block were explained and nothing
 /// lost elsewhere.
 const LEAST_LOG_RATIO: f64 = 1.0;
@@ -78,7 +82,7 @@ pub fn search(
     let state = setting.fit(Vec::new(), start, model)?;
     let held_out = setting.hold_out(&state)?;
     let base = Judged { state, held_out };
-    let coordinates = Coordinates::of(setting.track, &base.state.sheet);
+    let coordinates = Coordinates::of(setting.track);
     let features = features(setting, &coordinates);
     let seen = seen(setting);
     let every: Vec<&Feature> = features.iter().collect();
@@ -90,28 +94,32 @@ pub fn search(
     let mut best = base.clone();
     let mut first = Vec::new();
     let mut rounds = Vec::new();
+    let mut promising = BTreeSet::new();
     for round in 0..limits.max_effects {
-        let trials = trial::all(setting, &best.state, &best.held_out, &seen, &limits.excluded);
+        let trials = trial::among(setting, &best.state, &best.held_out, &seen, &|id| {
+            !limits.excluded.iter().any(|excluded| excluded == id)
+        });
         if round == 0 {
             first.clone_from(&trials);
         }
         rounds.push(trials.clone());
+        promising.extend(promise(&trials));
         for trial in &trials {
             floor_square = floor_square.min(trial.held_out.mean_square());
         }
-        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &best, floor_square, limits)) else {
+        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &best, &base, floor_square, limits)) else {
             break;
         };
         let Some(next) = settle(setting, &best, &chosen) else { break };
         best = next;
         if round > 0 {
-            best = second_look(setting, best, &seen, limits);
+            best = second_look(setting, best, &seen, &promising);
         }
         floor_square = floor_square.min(best.held_out.mean_square());
     }
     let mut taken = Vec::new();
     for index in 0..best.state.guesses.len() {
-        let Some((without, rivals)) = without(setting, &best, index, &seen, limits) else { continue };
+        let Some((without, rivals)) = without(setting, &best, index, &seen, &promising) else { continue };
         taken.push(Taken { without: without.held_out, rivals });
     }
     let left = Remainder::of(setting, &best.state).structure(&every);
@@ -121,13 +129,23 @@ pub fn search(
     Some(Found { base, best, taken, first, rounds, coordinates, features, floor_square, left })
 }
 
+/// Ids of the trials that come anywhere near the best: what may stand in the place of what was taken.
+fn promise(trials: &[Trial]) -> impl Iterator<Item = &'static str> {
+    let best = trials.first().map_or(0.0, |trial| trial.log_ratio);
+    trials.iter().filter(move |trial| trial.log_ratio > (0.15 * best).max(0.3)).map(|trial| trial.guess.id())
+}
+
 /// Whether a trial gains more than chance and more than what does not matter.
-fn worth(trial: &Trial, best: &Judged, floor_square: f64, limits: &Limits) -> bool {
+fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits: &Limits) -> bool {
     let gained = best.held_out.mean_square() - trial.held_out.mean_square();
     let mismatch = best.held_out.mean_square() - floor_square;
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
-    gained > LEAST_SHARE * mismatch && gained > matters && trial.log_ratio > LEAST_LOG_RATIO
+    let whole = base.held_out.mean_square() - floor_square;
+    gained > LEAST_SHARE * mismatch
+        && gained > LEAST_OF_ALL * whole
+        && gained > matters
+        && trial.log_ratio > LEAST_LOG_RATIO
 }
 
 /// Probability that an improvement of held-out blocks is chance: a t-test on the log ratios of the blocks that it touches.
@@ -189,22 +207,22 @@ fn without(
     best: &Judged,
     index: usize,
     seen: &Seen,
-    limits: &Limits,
+    promising: &BTreeSet<&'static str>,
 ) -> Option<(Judged, Vec<Trial>)> {
     let mut others = best.state.guesses.clone();
     others.remove(index);
     let state = setting.fit(others, &best.state.fit.x[..setting.space.free.len()], &best.state.model)?;
     let held_out = setting.hold_out(&state)?;
     let judged = Judged { state, held_out };
-    let rivals = trial::all(setting, &judged.state, &judged.held_out, seen, &limits.excluded);
+    let rivals = trial::among(setting, &judged.state, &judged.held_out, seen, &|id| promising.contains(id));
     Some((judged, rivals))
 }
 
 /// Looks at every effect that was taken once more: another one in its place, or none.
-fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, limits: &Limits) -> Judged {
+fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &BTreeSet<&'static str>) -> Judged {
     let mut best = best;
     for index in 0..best.state.guesses.len() {
-        let Some((rest, rivals)) = without(setting, &best, index, seen, limits) else { continue };
+        let Some((rest, rivals)) = without(setting, &best, index, seen, promising) else { continue };
         let Some(rival) = rivals.first() else { continue };
         let own = rest.held_out.log_ratio(&best.held_out);
         // As good is not better.

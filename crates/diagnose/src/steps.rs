@@ -2,8 +2,36 @@
 
 use crate::state::{Setting, State};
 
-/// Instants per recording that are tried.
+/// Instants per recording that are tried for a difference between all before and all after, and as many for a difference
+/// between just before and just after.
 const PER_RECORDING: usize = 3;
+/// What "just" means, in s.
+const NEAR_S: f64 = 1.0;
+
+/// Whether the residual itself jumps at the instant of a step of `step_n`, and by about as much: whatever drifts instead is no
+/// step.
+pub(crate) fn is_sudden(setting: &Setting<'_>, residuals_n: &[f64], shape: &[f64], step_n: f64) -> bool {
+    let Some(range) = setting.track.recordings.get(shape[0] as usize) else { return false };
+    let jump_n = jump_n(setting, residuals_n, range.clone(), shape[1]);
+    jump_n.is_some_and(|jump_n| jump_n / step_n > 0.5 && jump_n / step_n < 2.0)
+}
+
+/// Mean residual just after an instant less that just before it; none where too little of either counts.
+fn jump_n(setting: &Setting<'_>, residuals_n: &[f64], range: std::ops::Range<usize>, instant_s: f64) -> Option<f64> {
+    let (mut before, mut after) = ((0.0, 0.0), (0.0, 0.0));
+    let instants = &setting.track.instants[range.clone()];
+    let first = range.start + instants.partition_point(|instant| instant.moment.time_s < instant_s - NEAR_S);
+    for at in (first..range.end).filter(|&at| setting.track.counted[at]) {
+        let time_s = setting.track.instants[at].moment.time_s;
+        if time_s > instant_s + NEAR_S {
+            break;
+        }
+        let side = if time_s < instant_s { &mut before } else { &mut after };
+        side.0 += residuals_n[at];
+        side.1 += 1.0;
+    }
+    (before.1 >= 5.0 && after.1 >= 5.0).then(|| after.0 / after.1 - before.0 / before.1)
+}
 
 /// Shapes (recording, instant in s) of the most likely steps: where the two sides of a cut differ most in their mean.
 pub(crate) fn shapes(setting: &Setting<'_>, state: &State) -> Vec<Vec<f64>> {
@@ -29,15 +57,21 @@ pub(crate) fn shapes(setting: &Setting<'_>, state: &State) -> Vec<Vec<f64>> {
             gains.push((gain, position));
             sum += residuals[at];
         }
-        let mut taken: Vec<usize> = Vec::new();
-        gains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        for (gain, position) in gains {
-            if taken.len() == PER_RECORDING || gain <= 0.0 {
-                break;
-            }
-            if taken.iter().all(|&other| other.abs_diff(position) > n / 20) {
-                taken.push(position);
-                shapes.push(vec![index as f64, setting.track.instants[counted[position]].moment.time_s]);
+        let jumps = counted.iter().enumerate().step_by(5).map(|(position, &at)| {
+            let instant_s = setting.track.instants[at].moment.time_s;
+            (jump_n(setting, &residuals, range.clone(), instant_s).unwrap_or(0.0).abs(), position)
+        });
+        for mut ranked in [gains, jumps.collect()] {
+            let mut taken: Vec<usize> = Vec::new();
+            ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            for (gain, position) in ranked {
+                if taken.len() == PER_RECORDING || gain <= 0.0 {
+                    break;
+                }
+                if taken.iter().all(|&other| other.abs_diff(position) > n / 20) {
+                    taken.push(position);
+                    shapes.push(vec![index as f64, setting.track.instants[counted[position]].moment.time_s]);
+                }
             }
         }
     }

@@ -54,7 +54,7 @@ pub fn features(setting: &Setting<'_>, coordinates: &Coordinates) -> Vec<Feature
     for (coordinate, knots, odd) in [
         (Coordinate::Pressure, 14, true),
         (Coordinate::Contraction, 20, true),
-        (Coordinate::Force, 20, true),
+        (Coordinate::Force, 32, true),
         (Coordinate::Speed, 10, true),
         (Coordinate::TravelSinceReversal, 12, true),
         (Coordinate::TimeSinceLastMove, 8, true),

@@ -24,14 +24,23 @@ pub struct Trial {
 /// Candidates whose shapes are refined before they are compared.
 const REFINED: usize = 5;
 
-/// Tries every effect of the catalogue that `state` does not have and `excluded` does not name; best first.
-pub fn all(setting: &Setting<'_>, state: &State, before: &HeldOut, seen: &Seen, excluded: &[String]) -> Vec<Trial> {
+/// Share of its evidence that an event keeps: it has been looked for at every instant of every recording.
+const EVENT_CHARGE: f64 = 0.8;
+
+/// Tries every effect of the catalogue that `state` does not have and that `takes` lets through by its id; best first.
+pub fn among(
+    setting: &Setting<'_>,
+    state: &State,
+    before: &HeldOut,
+    seen: &Seen,
+    takes: &(dyn Fn(&str) -> bool + Sync),
+) -> Vec<Trial> {
     let candidates: Vec<&'static dyn Effect> = CATALOGUE
         .iter()
         .copied()
         .filter(|effect| {
             let id = effect.page().id;
-            !excluded.iter().any(|excluded| excluded == id) && !state.guesses.iter().any(|guess| guess.id() == id)
+            takes(id) && !state.guesses.iter().any(|guess| guess.id() == id)
         })
         .collect();
     let jobs: Vec<(usize, Guess)> = candidates
@@ -43,7 +52,18 @@ pub fn all(setting: &Setting<'_>, state: &State, before: &HeldOut, seen: &Seen, 
             shapes.into_iter().map(move |shape| (index, Guess { effect, shape }))
         })
         .collect();
-    let costs: Vec<Option<f64>> = jobs.par_iter().map(|(_, guess)| mean_square(setting, state, guess)).collect();
+    let residuals_n = setting.residuals_n(state);
+    let costs: Vec<Option<f64>> = jobs
+        .par_iter()
+        .map(|(_, guess)| {
+            if guess.effect.kind() != Kind::Event {
+                return mean_square(setting, state, guess);
+            }
+            let fit = setting.fit_more(state, guess)?;
+            let step_n = fit.amplitudes.last()?;
+            steps::is_sudden(setting, &residuals_n, &guess.shape, *step_n).then_some(fit.mean_square)
+        })
+        .collect();
     let mut best: Vec<Option<(f64, &Guess)>> = vec![None; candidates.len()];
     for ((index, guess), cost) in jobs.iter().zip(costs) {
         if let Some(cost) = cost
@@ -67,7 +87,8 @@ pub fn all(setting: &Setting<'_>, state: &State, before: &HeldOut, seen: &Seen, 
         .into_par_iter()
         .filter_map(|(mean_square, guess)| {
             let held_out = hold_out(setting, state, &guess)?;
-            let log_ratio = before.log_ratio(&held_out);
+            let charge = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
+            let log_ratio = charge * before.log_ratio(&held_out);
             Some(Trial { guess, mean_square, held_out, log_ratio })
         })
         .collect();

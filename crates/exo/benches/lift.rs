@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use pam_core::effects::AugmentedModel;
 use pam_core::force::{BaseParameters, ForceModel, Form};
 use pam_core::muscle::MuscleFile;
 use pam_exo::config::{LiftConfig, LiftPlan};
@@ -12,7 +13,7 @@ fn main() {
     divan::main();
 }
 
-fn setup() -> (LiftPlan, ForceModel, ExactInverse) {
+fn setup() -> (LiftPlan, AugmentedModel, ExactInverse) {
     let (config, muscle) =
         (include_str!("../../../configs/lift.toml"), include_str!("../../../configs/muscle-nominal.toml"));
     let plan =
@@ -24,7 +25,7 @@ fn setup() -> (LiftPlan, ForceModel, ExactInverse) {
     let parameters = BaseParameters { theta: [0.9, 1.05, 2.0, 118.4e3, 105.7e3, 1.0 / 3e9, 1.2e-3, 0.0] };
     let model = ForceModel::new(&muscle, 3e9, Form::Corrected, parameters);
     let inverse = ExactInverse::new(model.clone(), 0.0, 5e5);
-    (plan, model, inverse)
+    (plan, model.into(), inverse)
 }
 
 #[divan::bench]

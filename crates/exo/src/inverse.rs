@@ -4,7 +4,7 @@
 //! The direction is a number between -1 and 1, because friction that has not broken away yet is somewhere
 //! between the branches of contraction and extension.
 
-use pam_core::force::ForceModel;
+use pam_core::effects::AugmentedModel;
 
 /// An answer of an inverse.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,10 +21,10 @@ pub trait Inverse: Sync {
     fn pressure_pa(&self, force_n: f64, length_m: f64, direction: f64) -> Inverted;
 }
 
-/// The inverse by bracketed root finding on the model.
+/// The inverse by bracketed root finding on the settled force of a model.
 #[derive(Debug, Clone)]
 pub struct ExactInverse {
-    model: ForceModel,
+    model: AugmentedModel,
     lowest_pa: f64,
     highest_pa: f64,
 }
@@ -34,15 +34,15 @@ const TOLERANCE_PA: f64 = 1e-3;
 
 impl ExactInverse {
     /// The inverse of `model` between two gauge pressures.
-    pub fn new(model: ForceModel, lowest_pa: f64, highest_pa: f64) -> Self {
-        Self { model, lowest_pa, highest_pa }
+    pub fn new(model: impl Into<AugmentedModel>, lowest_pa: f64, highest_pa: f64) -> Self {
+        Self { model: model.into(), lowest_pa, highest_pa }
     }
 }
 
 impl Inverse for ExactInverse {
     /// Regula falsi in the form of Illinois: the force is nearly linear in the pressure.
     fn pressure_pa(&self, force_n: f64, length_m: f64, direction: f64) -> Inverted {
-        let excess_n = |pressure_pa: f64| self.model.force_n(pressure_pa, length_m, direction) - force_n;
+        let excess_n = |pressure_pa: f64| self.model.settled_force_n(pressure_pa, length_m, direction) - force_n;
         let (mut low_pa, mut high_pa) = (self.lowest_pa, self.highest_pa);
         let (mut low_n, mut high_n) = (excess_n(low_pa), excess_n(high_pa));
         if !(low_n <= 0.0 && high_n >= 0.0) {

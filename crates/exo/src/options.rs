@@ -1,5 +1,6 @@
 //! What each option of the controller is worth: the lift with all of them, without each, and with none.
 
+use pam_core::effects::AugmentedModel;
 use pam_core::force::{BaseParameters, ForceModel, Parameter};
 
 use crate::config::LiftPlan;
@@ -47,7 +48,7 @@ pub const CASES: [&str; 9] = [
 struct Case {
     deviations: Vec<Deviation>,
     valve: ValveKind,
-    force: ForceModel,
+    force: AugmentedModel,
 }
 
 fn cases(simulation: &Simulation<'_>) -> [Case; CASES.len()] {
@@ -79,23 +80,25 @@ fn cases(simulation: &Simulation<'_>) -> [Case; CASES.len()] {
 }
 
 /// The model with some of its parameters scaled.
-fn scaled(model: &ForceModel, parameters: &[Parameter], factor: f64) -> ForceModel {
-    let mut theta = model.parameters().theta;
+fn scaled(model: &AugmentedModel, parameters: &[Parameter], factor: f64) -> AugmentedModel {
+    let base = model.base();
+    let mut theta = base.parameters().theta;
     parameters.iter().for_each(|parameter| theta[parameter.index()] *= factor);
-    ForceModel::new(model.muscle(), model.strand_modulus_pa(), model.form(), BaseParameters { theta })
+    model.on(ForceModel::new(base.muscle(), base.strand_modulus_pa(), base.form(), BaseParameters { theta }))
 }
 
 /// Lifts with every variant of the controller; an option that the configuration leaves off has no row.
 pub fn compare_options(simulation: &Simulation<'_>, seed: u64) -> Vec<Variant> {
     let cases = cases(simulation);
-    variants(simulation.plan)
+    variants(simulation)
         .into_iter()
         .map(|(name, plan)| Variant { name, cases: cases.each_ref().map(|case| errors(simulation, &plan, case, seed)) })
         .collect()
 }
 
 /// The configuration with all options, without each, and with none.
-fn variants(plan: &LiftPlan) -> Vec<(String, LiftPlan)> {
+fn variants(simulation: &Simulation<'_>) -> Vec<(String, LiftPlan)> {
+    let plan = simulation.plan;
     let full = plan.control;
     let mut plans = vec![("as configured".to_owned(), plan.clone())];
     let mut without = |name: &str, control: ControlSettings| {
@@ -107,6 +110,9 @@ fn variants(plan: &LiftPlan) -> Vec<(String, LiftPlan)> {
     without("disturbance observer", ControlSettings { disturbance_observer: false, ..full });
     without("lag compensation", ControlSettings { lag_compensation: false, ..full });
     without("hysteresis-aware inverse", ControlSettings { hysteresis_aware: false, ..full });
+    if !simulation.model.is_plain() {
+        without("memory of effects", ControlSettings { effect_memory: false, ..full });
+    }
     without("payload estimation", ControlSettings { payload_estimation: false, ..full });
     without("length by reference", ControlSettings { length: LengthSource::Measured, ..full });
     if plan.handover_s + plan.hold_s > 0.0 {

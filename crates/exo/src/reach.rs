@@ -16,7 +16,7 @@ const INSTANTS: u32 = 200;
 pub fn check_reach(simulation: &Simulation<'_>) -> Result<(), ReachError> {
     let plan = simulation.plan;
     let real = simulation.physics(&Deviation::none(plan), simulation.plant);
-    let told = MusclePhysics { force: simulation.model.clone(), friction_scale: 1.0, bowden: 0.0, ..real.muscle };
+    let told = MusclePhysics::new(simulation.model, 1.0, plan.presliding_m, 0.0);
     for (elbow, muscle) in [(Elbow::new(&plan.load, &plan.forearm), &told), (real.elbow, &real.muscle)] {
         for index in 0..=INSTANTS {
             let time_s = plan.reference.duration_s * f64::from(index) / f64::from(INSTANTS);
@@ -42,7 +42,7 @@ fn check_instant(
     let at_highest_n = muscle.thrust_n(highest_pa, there.length_m, direction);
     let (q_rad, length_mm) = (at.q_rad, 1e3 * there.length_m);
     let (lowest_kpa, highest_kpa) = (1e-3 * lowest_pa, 1e-3 * highest_pa);
-    let straight_mm = 1e3 * muscle.force.muscle().strand_length_m();
+    let straight_mm = 1e3 * muscle.force().base().muscle().strand_length_m();
     if length_mm >= straight_mm {
         Err(ReachError::Overstretched { q_rad, time_s, length_mm, straight_mm })
     } else if at_highest_n <= 0.0 {

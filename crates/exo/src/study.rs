@@ -5,7 +5,7 @@
 //! on the number of threads nor on the number of trials. Of a trial five numbers are kept; errors over time go
 //! into histograms of counts, which add up to the same in any order.
 
-use pam_core::force::ForceModel;
+use pam_core::effects::AugmentedModel;
 use rand::RngExt as _;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
@@ -160,8 +160,8 @@ fn one_trial(
     let deviation = draw(simulation.plan, &mut rng);
     let drawn = uncertainty
         .filter(|_| simulation.plan.spreads.model_parameters)
-        .map(|uncertainty| uncertainty.draw(simulation.plant, &mut rng));
-    let force: &ForceModel = drawn.as_ref().unwrap_or(simulation.plant);
+        .map(|uncertainty| simulation.plant.on(uncertainty.draw(simulation.plant.base(), &mut rng)));
+    let force: &AugmentedModel = drawn.as_ref().unwrap_or(simulation.plant);
     let mut period = [0; 2];
     let outcomes = simulation.run(&deviation, force, &mut rng, |arm, instant| {
         envelope.add(period[arm], instant.reference.q_rad - instant.state.q_rad);

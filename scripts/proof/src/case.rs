@@ -123,10 +123,15 @@ pub struct Log {
     pub duration_scale: f64,
     /// Seed of noise and phases.
     pub seed: u64,
+    /// Whether what happens once happens in this one.
+    pub eventful: bool,
 }
 
 /// Ids of the two effects that no catalogue has.
 pub const NAMELESS: [&str; 2] = ["rubbing-tie", "bad-spot"];
+
+/// The effect that happens once, in one recording.
+pub const EVENT: &str = "force-step";
 
 /// Ids of the catalogue.
 pub const CATALOGUE: [&str; 22] = [

@@ -175,7 +175,8 @@ fn attempt(plan: &Plan, ids: &[&str], name: &str, redraws: u32, random: &mut Pcg
     if !ids.is_empty() {
         let effects = hidden_of(&case);
         let hidden = Hidden { effects: &effects, seed: effect_seed, misfit_n: 0.0 };
-        let places = rig.places(&estimation[0], &hidden)?;
+        let eventful = estimation.iter().find(|log| log.eventful).unwrap_or(&estimation[0]);
+        let places = rig.places(eventful, &hidden)?;
         let Ok(together_n) = calibration.leaves_n(&hidden) else { return Ok(None) };
         // Effects that cancel conceal nothing.
         if together_n < OVER_FLOOR.0 * noise.floor_n * 0.95 {
@@ -199,17 +200,26 @@ fn logs(rig: &Rig, set: &Set, random: &mut Pcg64Dxsm) -> Option<(Vec<Log>, Vec<L
             file = letters(random, 6);
         }
         let duration_scale = scale(rig, protocol, samples)?;
-        Some(Log { file: format!("{file}.csv"), protocol: protocol.to_owned(), duration_scale, seed: random.random() })
+        Some(Log {
+            file: format!("{file}.csv"),
+            protocol: protocol.to_owned(),
+            duration_scale,
+            seed: random.random(),
+            eventful: false,
+        })
     };
     let mut protocols = set.estimation.to_vec();
     protocols.shuffle(random);
     let estimation: Option<Vec<Log>> =
         protocols.iter().map(|protocol| log(protocol, set.samples(protocol), random)).collect();
+    let mut estimation = estimation?;
+    let eventful = random.random_range(0..estimation.len());
+    estimation[eventful].eventful = true;
     let second = set.holdout[random.random_range(0..set.holdout.len())];
     let mut held = ["multisine", second];
     held.shuffle(random);
     let holdout: Option<Vec<Log>> = held.iter().map(|protocol| log(protocol, HOLDOUT_SAMPLES, random)).collect();
-    Some((estimation?, holdout?))
+    Some((estimation, holdout?))
 }
 
 /// Duration scale at which a protocol has about `samples` samples.

@@ -4,7 +4,7 @@ use anyhow::Result;
 use pam_core::recording::{Recording, Samples};
 use pam_virtual_bench::{Bench, BenchRecording, Concealed, Options, Protocol, Sensors, TrueMuscle};
 
-use crate::case::{Case, Log, Noise, Place};
+use crate::case::{Case, EVENT, Log, Noise, Place};
 
 /// Sampling rate, in Hz.
 pub const RATE_HZ: f64 = 200.0;
@@ -109,8 +109,12 @@ impl Rig {
     fn bench(&self, log: &Log, hidden: &Hidden<'_>) -> Result<Bench> {
         let options = self.options(log.seed, log.duration_scale);
         let command = Protocol::named(&log.protocol)?.command(&self.muscle, &options)?;
-        let concealed: Vec<Concealed> =
-            hidden.effects.iter().map(|(id, severity)| Concealed::new(id, *severity)).collect();
+        let concealed: Vec<Concealed> = hidden
+            .effects
+            .iter()
+            .filter(|(id, _)| log.eventful || *id != EVENT)
+            .map(|(id, severity)| Concealed::new(id, *severity))
+            .collect();
         let bench = Bench::new(self.muscle.clone(), command).with_effects(&concealed, hidden.seed)?;
         Ok(bench.with_smooth_misfit(hidden.misfit_n)?)
     }

@@ -117,7 +117,7 @@ pub enum Coordinate {
     TimeSinceLastMove,
     /// Cycle of motion, counted from 1.
     Cycle,
-    /// Force as the base model has it, in N.
+    /// Force as measured, in N.
     Force,
 }
 

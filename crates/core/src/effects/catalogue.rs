@@ -282,6 +282,7 @@ mod tests {
                         length_m: muscle.length_m(contraction_ratio),
                         contraction_ratio,
                         speed_m_per_s: generator.random_range(-0.5..0.5),
+                        slide_speed_m_per_s: generator.random_range(-0.1..0.1),
                         acceleration_m_per_s2: generator.random_range(-50.0..50.0),
                         direction: [-1.0, 0.0, 1.0][index % 3],
                         slide_m: generator.random_range(-0.01..0.1),

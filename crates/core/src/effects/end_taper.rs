@@ -39,7 +39,7 @@ impl Effect for EndTaper {
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "cotangent_of_taper", unit: "1", range: (0.0, 3.0) }]
+        &[Amplitude { name: "cotangent_of_taper", unit: "1", range: (0.0, 20.0) }]
     }
 
     fn start(&self, muscle: &Muscle, _shape: &[f64]) -> Box<dyn Memory> {

@@ -23,6 +23,9 @@ pub struct Moment {
     pub contraction_ratio: f64,
     /// Speed of contraction, `-dL/dt`, smooth.
     pub speed_m_per_s: f64,
+    /// Speed at which the braid slides: that of contraction, and where the length stands still [`SLIDE_M_PER_PA`] times the
+    /// rate of the pressure.
+    pub slide_speed_m_per_s: f64,
     /// Acceleration of contraction, smooth.
     pub acceleration_m_per_s2: f64,
     /// Direction of motion: +1 contracting, -1 extending, 0 where nothing ever moved.
@@ -84,6 +87,7 @@ impl Moment {
             length_m,
             contraction_ratio: muscle.contraction_ratio(length_m),
             speed_m_per_s: 0.0,
+            slide_speed_m_per_s: 0.0,
             acceleration_m_per_s2: 0.0,
             direction,
             slide_m: muscle.rest_length_m - length_m,
@@ -148,6 +152,7 @@ pub(super) mod tests {
             length_m: 0.24,
             contraction_ratio: 0.027 / 0.267,
             speed_m_per_s: 0.0,
+            slide_speed_m_per_s: 0.0,
             acceleration_m_per_s2: 0.0,
             direction: 1.0,
             slide_m: 0.027,

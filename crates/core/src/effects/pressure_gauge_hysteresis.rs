@@ -1,7 +1,7 @@
 //! Hysteresis of the pressure gauge: what it shows depends on where the pressure came from.
 //!
 //! ```text
-//! p_m = p - b z,   z = Maxwell slip over r on p,   F = F_base - b z ∂F/∂p
+//! p_m = p + b z,   z = Maxwell slip over r on p,   F = F_base + b z ∂F/∂p
 //! ```
 
 use super::page::{Confusion, Page, Symbol};
@@ -56,16 +56,16 @@ impl Memory for State {
         }
         // Where the pressure came from at first is not known, and the direction of motion does not tell.
         let settled = || Slip::settled(self.slip_pa, now.pressure_pa, 0.0);
-        columns[0] = -base.slope_n_per_pa * self.slip.get_or_insert_with(settled).move_to(now.pressure_pa);
+        columns[0] = base.slope_n_per_pa * self.slip.get_or_insert_with(settled).move_to(now.pressure_pa);
     }
 }
 
 static PAGE: Page = Page {
     id: "pressure-gauge-hysteresis",
     name: "hysteresis of the pressure gauge",
-    summary: "A membrane that creeps back shows more on the way up than on the way down, so the pressure in the muscle \
-              is lower than recorded while it rises and higher while it falls, however slowly.",
-    equation: "F = F_base - b z ∂F_base/∂p,  z = Σ w_i z_i,  z_i ← clamp(z_i + Δp / r_i, -1, 1),  r_i = r (0.15 … 4.5)",
+    summary: "A membrane that follows late shows less on the way up than on the way down, so the pressure in the muscle \
+              is higher than recorded while it rises and lower while it falls, however slowly.",
+    equation: "F = F_base + b z ∂F_base/∂p,  z = Σ w_i z_i,  z_i ← clamp(z_i + Δp / r_i, -1, 1),  r_i = r (0.15 … 4.5)",
     symbols: &[
         Symbol {
             symbol: "b",
@@ -88,7 +88,7 @@ static PAGE: Page = Page {
         },
         Confusion {
             id: "presliding-hysteresis",
-            because: "friction of the braid opens the isometric loop as well, with the same sign",
+            because: "friction of the braid opens the isometric loop as well, the other way round",
             test: "isobaric triangles: friction opens those loops, a gauge does not; or a second gauge",
         },
         Confusion {
@@ -113,12 +113,12 @@ mod tests {
     }
 
     #[test]
-    fn rising_pressure_shows_too_high_and_falling_too_low() {
+    fn rising_pressure_shows_too_low_and_falling_too_high() {
         let mut memory = PressureGaugeHysteresis.start(&nominal(), &[3e3]);
         assert!(pull(&mut *memory, &still(), &base())[0].abs() < 1e-15);
         let up_n = pull(&mut *memory, &at(5e5), &base())[0];
         let down_n = pull(&mut *memory, &at(1e5), &base())[0];
-        assert!((up_n + base().slope_n_per_pa).abs() < 1e-12 && (down_n - base().slope_n_per_pa).abs() < 1e-12);
+        assert!((up_n - base().slope_n_per_pa).abs() < 1e-12 && (down_n + base().slope_n_per_pa).abs() < 1e-12);
     }
 
     #[test]

@@ -27,7 +27,7 @@ impl Effect for RateDependentHysteresis {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "onset_speed_m_per_s", unit: "m/s", range: (1e-5, 1e-2), grid: &[1e-4, 1e-3] }]
+        &[Shape { name: "onset_speed_m_per_s", unit: "m/s", range: (1e-5, 5e-2), grid: &[1e-4, 1e-3, 1e-2] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
@@ -45,7 +45,7 @@ struct State {
 
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
-        let e_folds = (now.speed_m_per_s.abs() / self.onset_speed_m_per_s).ln_1p();
+        let e_folds = (now.slide_speed_m_per_s.abs() / self.onset_speed_m_per_s).ln_1p();
         columns[0] = -now.direction * base.normal_n * e_folds;
     }
 }
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn every_decade_far_above_the_onset_adds_the_same() {
         let mut memory = RateDependentHysteresis.start(&nominal(), &[1e-5]);
-        let mut at = |speed_m_per_s| pull(&mut *memory, &Moment { speed_m_per_s, ..still() }, &base())[0];
+        let mut at = |slide_speed_m_per_s| pull(&mut *memory, &Moment { slide_speed_m_per_s, ..still() }, &base())[0];
         let [slow, faster, fast] = [at(1e-2), at(1e-1), at(1.0)];
         assert!((faster - slow - (fast - faster)).abs() < 1e-3 * slow.abs());
         assert!((fast - faster + base().normal_n * 10.0_f64.ln()).abs() < 1e-3 * fast.abs());
@@ -113,7 +113,7 @@ mod tests {
     fn it_vanishes_at_rest_and_opposes_the_motion() {
         let mut memory = RateDependentHysteresis.start(&nominal(), &[1e-3]);
         assert_eq!(pull(&mut *memory, &still(), &base())[0], 0.0);
-        let back = Moment { speed_m_per_s: -1e-2, direction: -1.0, ..still() };
+        let back = Moment { slide_speed_m_per_s: -1e-2, direction: -1.0, ..still() };
         assert!(pull(&mut *memory, &back, &base())[0] > 0.0);
     }
 }

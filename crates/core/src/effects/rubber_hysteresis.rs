@@ -35,13 +35,14 @@ impl Effect for RubberHysteresis {
         &[Amplitude { name: "width_n", unit: "N", range: (0.0, 200.0) }]
     }
 
-    fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { distance_m: shape[0], slip: None })
+    fn start(&self, muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
+        Box::new(State { distance_m: shape[0], rest_length_m: muscle.rest_length_m, slip: None })
     }
 }
 
 struct State {
     distance_m: f64,
+    rest_length_m: f64,
     slip: Option<Slip>,
 }
 
@@ -50,8 +51,10 @@ impl Memory for State {
         if now.step_s == 0.0 {
             self.slip = None;
         }
-        let settled = || Slip::settled(self.distance_m, now.slide_m, now.direction);
-        columns[0] = -self.slip.get_or_insert_with(settled).move_to(now.slide_m);
+        // Rubber that is not stretched has no loop: pressure alone moves nothing.
+        let contraction_m = now.contraction_ratio * self.rest_length_m;
+        let settled = || Slip::settled(self.distance_m, contraction_m, now.direction);
+        columns[0] = -self.slip.get_or_insert_with(settled).move_to(contraction_m);
     }
 }
 
@@ -107,7 +110,11 @@ mod tests {
     use crate::muscle::tests::nominal;
 
     fn moved(contracted_m: f64) -> Moment {
-        Moment { step_s: 0.1, slide_m: still().slide_m + contracted_m, ..still() }
+        Moment {
+            step_s: 0.1,
+            contraction_ratio: still().contraction_ratio + contracted_m / nominal().rest_length_m,
+            ..still()
+        }
     }
 
     #[test]

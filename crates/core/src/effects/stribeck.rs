@@ -50,7 +50,7 @@ struct State {
 
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
-        let crawl = (-now.speed_m_per_s.abs() / self.stribeck_speed_m_per_s).exp();
+        let crawl = (-now.slide_speed_m_per_s.abs() / self.stribeck_speed_m_per_s).exp();
         columns[0] = -now.direction * base.normal_n * crawl;
     }
 }
@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn it_falls_from_static_friction_to_nothing() {
         let mut memory = Stribeck.start(&nominal(), &[5e-3]);
-        let mut at = |speed_m_per_s| pull(&mut *memory, &Moment { speed_m_per_s, ..still() }, &base())[0];
+        let mut at = |slide_speed_m_per_s| pull(&mut *memory, &Moment { slide_speed_m_per_s, ..still() }, &base())[0];
         assert_eq!(at(0.0), -base().normal_n);
         assert!((at(5e-3) / at(0.0) - (-1.0_f64).exp()).abs() < 1e-12);
         assert!(at(1.0).abs() < 1e-12);
@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn it_opposes_the_motion() {
         let mut memory = Stribeck.start(&nominal(), &[5e-3]);
-        let now = Moment { speed_m_per_s: -1e-3, direction: -1.0, ..still() };
+        let now = Moment { slide_speed_m_per_s: -1e-3, direction: -1.0, ..still() };
         assert!(pull(&mut *memory, &now, &base())[0] > 0.0);
     }
 }

@@ -38,9 +38,10 @@ use crate::muscle::{Kinematics, Muscle};
 #[derive(Debug, Clone, Copy)]
 pub struct Bladder {
     rubber_volume_m3: f64,
-    rest_length_m: f64,
-    rest_wall_m: f64,
-    rest_mid_wall_m: f64,
+    /// `4 V_r / π`.
+    wall_term_m3: f64,
+    /// `1 / L₀`, `1 / (D₀ - t₀)` and `1 / t₀`, as a division costs ten products.
+    per_rest_m: [f64; 3],
     kinematics: Kinematics,
 }
 
@@ -48,11 +49,11 @@ impl Bladder {
     /// The term for `muscle`.
     pub fn new(muscle: &Muscle) -> Self {
         let rest_mid_wall_m = 2.0 * muscle.rest_radius_m - muscle.wall_thickness_m;
+        let rubber_volume_m3 = PI * muscle.rest_length_m * muscle.wall_thickness_m * rest_mid_wall_m;
         Self {
-            rubber_volume_m3: PI * muscle.rest_length_m * muscle.wall_thickness_m * rest_mid_wall_m,
-            rest_length_m: muscle.rest_length_m,
-            rest_wall_m: muscle.wall_thickness_m,
-            rest_mid_wall_m,
+            rubber_volume_m3,
+            wall_term_m3: 4.0 * rubber_volume_m3 / PI,
+            per_rest_m: [1.0 / muscle.rest_length_m, 1.0 / rest_mid_wall_m, 1.0 / muscle.wall_thickness_m],
             kinematics: Kinematics::of(muscle),
         }
     }
@@ -62,17 +63,17 @@ impl Bladder {
         self.rubber_volume_m3
     }
 
-    /// Wall, in m, at a length with its diameter.
-    fn wall_m(&self, length_m: f64, diameter_m: f64) -> f64 {
-        let root_m = (diameter_m * diameter_m - 4.0 * self.rubber_volume_m3 / (PI * length_m)).sqrt();
-        0.5 * (diameter_m - root_m)
+    /// Inner diameter `D - 2 t`, in m, at a length with its diameter.
+    fn inner_diameter_m(&self, length_m: f64, diameter_m: f64) -> f64 {
+        (diameter_m * diameter_m - self.wall_term_m3 / length_m).sqrt()
     }
 
     /// Stretches `λ₁`, `λ₂`, `λ₃` at a length.
     pub fn stretches(&self, length_m: f64) -> [f64; 3] {
         let diameter_m = self.kinematics.diameter_m(length_m);
-        let wall_m = self.wall_m(length_m, diameter_m);
-        [length_m / self.rest_length_m, (diameter_m - wall_m) / self.rest_mid_wall_m, wall_m / self.rest_wall_m]
+        let wall_m = 0.5 * (diameter_m - self.inner_diameter_m(length_m, diameter_m));
+        let [d1, per_mid_wall_m, per_wall_m] = self.per_rest_m;
+        [length_m * d1, (diameter_m - wall_m) * per_mid_wall_m, wall_m * per_wall_m]
     }
 
     /// Forces per unit of `C₁₀` and of `C₀₁`, in N/Pa: `V_r dI₁/dL` and `V_r dI₂/dL`.
@@ -82,16 +83,16 @@ impl Bladder {
 
     /// [`columns_n_per_pa`](Self::columns_n_per_pa) where the diameter is known already.
     pub(super) fn columns_at(&self, length_m: f64, diameter_m: f64) -> [f64; 2] {
-        let wall_m = self.wall_m(length_m, diameter_m);
+        let inner_m = self.inner_diameter_m(length_m, diameter_m);
+        let wall_m = 0.5 * (diameter_m - inner_m);
         let diameter_slope = self.kinematics.diameter_slope(length_m, diameter_m);
-        let wall_slope =
-            -wall_m * ((diameter_m - wall_m) + length_m * diameter_slope) / (length_m * (diameter_m - 2.0 * wall_m));
-        let l1 = length_m / self.rest_length_m;
-        let l2 = (diameter_m - wall_m) / self.rest_mid_wall_m;
-        let l3 = wall_m / self.rest_wall_m;
-        let d1 = 1.0 / self.rest_length_m;
-        let d2 = (diameter_slope - wall_slope) / self.rest_mid_wall_m;
-        let d3 = wall_slope / self.rest_wall_m;
+        let wall_slope = -wall_m * ((diameter_m - wall_m) + length_m * diameter_slope) / (length_m * inner_m);
+        let [d1, per_mid_wall_m, per_wall_m] = self.per_rest_m;
+        let l1 = length_m * d1;
+        let l2 = (diameter_m - wall_m) * per_mid_wall_m;
+        let l3 = wall_m * per_wall_m;
+        let d2 = (diameter_slope - wall_slope) * per_mid_wall_m;
+        let d3 = wall_slope * per_wall_m;
         let (q1, q2, q3) = (l1 * l1, l2 * l2, l3 * l3);
         [
             2.0 * self.rubber_volume_m3 * (l1 * d1 + l2 * d2 + l3 * d3),
@@ -128,6 +129,32 @@ mod tests {
                 / (2.0 * step_m);
             let force_n = bladder.force_n(length_m, 118.4e3, 105.7e3);
             assert!((force_n - slope_n).abs() < 1e-5 * force_n.abs().max(1.0), "L = {length_m}: {force_n} {slope_n}");
+        }
+    }
+
+    #[test]
+    fn columns_are_the_equations_as_written() {
+        let muscle = nominal();
+        let bladder = Bladder::new(&muscle);
+        let volume_m3 = bladder.rubber_volume_m3();
+        for step in 0..60 {
+            let length_m = 0.18 + 0.0015 * f64::from(step);
+            let diameter_m = muscle.diameter_m(length_m);
+            let slope = muscle.diameter_slope(length_m);
+            let wall_m = 0.5 * (diameter_m - (diameter_m * diameter_m - 4.0 * volume_m3 / (PI * length_m)).sqrt());
+            let wall_slope =
+                -wall_m * (diameter_m - wall_m + length_m * slope) / (length_m * (diameter_m - 2.0 * wall_m));
+            let (rest_m, rest_wall_m) = (muscle.rest_length_m, muscle.wall_thickness_m);
+            let rest_mid_m = 2.0 * muscle.rest_radius_m - rest_wall_m;
+            let [l1, l2, l3] = [length_m / rest_m, (diameter_m - wall_m) / rest_mid_m, wall_m / rest_wall_m];
+            let [d1, d2, d3] = [1.0 / rest_m, (slope - wall_slope) / rest_mid_m, wall_slope / rest_wall_m];
+            let first = 2.0 * volume_m3 * (l1 * d1 + l2 * d2 + l3 * d3);
+            let (q1, q2, q3) = (l1 * l1, l2 * l2, l3 * l3);
+            let second = 2.0 * volume_m3 * (l1 * (q2 + q3) * d1 + l2 * (q1 + q3) * d2 + l3 * (q1 + q2) * d3);
+            // Both vanish at the rest length; what counts is their size along the stroke, 3e-4 N/Pa.
+            let [by_c10, by_c01] = bladder.columns_n_per_pa(length_m);
+            assert!((by_c10 - first).abs() < 1e-12 * 3e-4, "L = {length_m}: {by_c10} {first}");
+            assert!((by_c01 - second).abs() < 1e-12 * 3e-4, "L = {length_m}: {by_c01} {second}");
         }
     }
 

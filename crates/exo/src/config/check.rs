@@ -161,6 +161,7 @@ impl LiftConfig {
                     * within("controller.pressure_loop_ms", controller.pressure_loop_ms, 1.0, 5000.0)?,
                 hysteresis_aware: controller.hysteresis_aware,
                 presliding_m: 1e-3 * within("controller.presliding_mm", controller.presliding_mm, 1e-3, 100.0)?,
+                effect_memory: controller.effect_memory,
                 payload_estimation: controller.payload_estimation,
                 pressure_limits_pa: [1e3 * lowest_kpa, 1e3 * highest_kpa],
             },

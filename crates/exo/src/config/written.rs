@@ -118,7 +118,14 @@ pub(super) struct ControllerToml {
     pub(super) pressure_loop_ms: f64,
     pub(super) hysteresis_aware: bool,
     pub(super) presliding_mm: f64,
+    #[serde(default = "on")]
+    pub(super) effect_memory: bool,
     pub(super) payload_estimation: bool,
+}
+
+/// Files from before there was the key have it switched on.
+fn on() -> bool {
+    true
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

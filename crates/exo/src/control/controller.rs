@@ -14,12 +14,14 @@
 //! | disturbance observer | opposes the acceleration `d` that the model leaves out; see [`Observer`]             |
 //! | lag compensation     | `p_c = p_m + τ_v [(p - p_m)/τ_c + κ (p_m + p_atm) V̇/V]`, and `q_s`, `q̈_s` later by what lag is left |
 //! | hysteresis-aware     | `z` by Dahl's model on the observed angle, instead of the sign of `q̇_s`              |
+//! | memory of effects    | `p = F⁻¹(f - m, l, z)`, `m` what effects beyond eq. 11 add to the settled force now    |
 //! | payload estimation   | weighs the load before the lift: mean of `r F(p_m, l, z)` over the hold              |
 
-use pam_core::force::ForceModel;
+use pam_core::effects::AugmentedModel;
 
 use super::{ControlSettings, LengthSource, Observer};
 use crate::arm::{Elbow, Forearm, Lever, LeverAt, Load};
+use crate::history::History;
 use crate::inverse::Inverse;
 use crate::plant::{ATMOSPHERE_PA, BladderGas, Dahl, POLYTROPIC};
 use crate::reference::Quintic;
@@ -36,8 +38,8 @@ pub struct Knowledge<'a> {
     /// Air in the muscle.
     pub gas: BladderGas,
     /// Force of the muscle.
-    pub force: &'a ForceModel,
-    /// Its inverse.
+    pub force: &'a AugmentedModel,
+    /// Inverse of its settled force.
     pub inverse: &'a dyn Inverse,
 }
 
@@ -77,7 +79,7 @@ pub enum Limited {
 }
 
 /// The controller of one arm; see the [module](self).
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Controller<'a> {
     settings: &'a ControlSettings,
     knowledge: &'a Knowledge<'a>,
@@ -90,6 +92,10 @@ pub struct Controller<'a> {
     /// Length that the friction has followed, in m, and by how much it lags: noise must not wear it away.
     followed_m: f64,
     direction: f64,
+    /// Motion as measured, where effects are to be followed.
+    history: Option<History>,
+    /// What they add to the settled force now, in N.
+    remembered_n: f64,
     pressure_pa: f64,
     weighed: Weighed,
 }
@@ -99,6 +105,16 @@ pub struct Controller<'a> {
 struct Weighed {
     torque_n_m: f64,
     count: f64,
+}
+
+/// A lag of the pressure: to oppose it by the pressure is to feed it back, and the loop around the valve rings.
+const LEFT_TO_THE_LOOP: &str = "pressure-lag";
+
+/// What the controller remembers of effects; none where there is nothing to remember.
+fn history(model: &AugmentedModel) -> Option<History> {
+    let followed = model.terms().iter().filter(|term| term.effect.page().id != LEFT_TO_THE_LOOP).cloned().collect();
+    let model = AugmentedModel::new(model.base().clone(), followed);
+    (!model.is_plain()).then(|| History::new(model))
 }
 
 /// Play between observed length and friction, in m; five times what the observer leaves of the angle's noise.
@@ -125,6 +141,8 @@ impl<'a> Controller<'a> {
             friction: Dahl::new(settings.presliding_m, 0.0),
             followed_m: knowledge.lever.at_angle(reference.from_rad).length_m,
             direction: if reference.to_rad < reference.from_rad { -1.0 } else { 1.0 },
+            history: if settings.effect_memory { history(knowledge.force) } else { None },
+            remembered_n: 0.0,
             pressure_pa,
             weighed: Weighed::default(),
         }
@@ -142,6 +160,7 @@ impl<'a> Controller<'a> {
         self.observe(carried[0], angle_rad, pressure_pa);
         let here = knowledge.lever.at_angle(self.observer.q_rad);
         self.follow_friction(here.length_m);
+        self.follow_effects(pressure_pa);
 
         let now = self.reference.at(time_s);
         let ahead = self.reference.at(time_s + self.look_ahead_s());
@@ -167,7 +186,7 @@ impl<'a> Controller<'a> {
         } else {
             self.direction
         };
-        let inverted = knowledge.inverse.pressure_pa(force_n, there.length_m, direction);
+        let inverted = knowledge.inverse.pressure_pa(force_n - self.remembered_n, there.length_m, direction);
         let [lowest_pa, highest_pa] = settings.pressure_limits_pa;
         let limited = if inverted.pressure_pa >= highest_pa {
             Limited::High
@@ -239,7 +258,8 @@ impl<'a> Controller<'a> {
         let at = self.knowledge.lever.at(sine, cosine);
         let mean_pa = 0.5 * (pressure_pa + self.pressure_pa);
         let state = if self.settings.hysteresis_aware { self.friction.state } else { self.direction };
-        let torque_n_m = at.moment_arm_m * self.knowledge.force.force_n(mean_pa, at.length_m, state).max(0.0);
+        let force_n = self.knowledge.force.settled_force_n(mean_pa, at.length_m, state) + self.remembered_n;
+        let torque_n_m = at.moment_arm_m * force_n.max(0.0);
         if self.settings.payload_estimation && carried >= 1.0 {
             self.weighed.torque_n_m += torque_n_m;
             self.weighed.count += 1.0;
@@ -257,6 +277,15 @@ impl<'a> Controller<'a> {
             self.friction.advance(step_m);
             self.followed_m -= step_m;
         }
+    }
+
+    /// What effects add now to the force that they settle at.
+    fn follow_effects(&mut self, pressure_pa: f64) {
+        let Some(history) = &mut self.history else { return };
+        let length_m = self.followed_m;
+        let state = if self.settings.hysteresis_aware { self.friction.state } else { self.direction };
+        history.advance(self.settings.period_s, pressure_pa, length_m, state);
+        self.remembered_n = history.remembered_n();
     }
 
     /// What the valve must be told so that the pressure becomes the desired one.

@@ -38,6 +38,8 @@ pub struct ControlSettings {
     pub hysteresis_aware: bool,
     /// Travel of pre-sliding as the controller knows it, in m.
     pub presliding_m: f64,
+    /// Whether the force follows what effects beyond eq. 11 remember; nothing where the model has none.
+    pub effect_memory: bool,
     /// Whether the load is weighed before the lift: mean force by pressure and length, over the time given.
     pub payload_estimation: bool,
     /// Limits of the commanded pressure, in Pa.
@@ -53,6 +55,7 @@ impl ControlSettings {
             disturbance_observer: false,
             lag_compensation: false,
             hysteresis_aware: false,
+            effect_memory: false,
             payload_estimation: false,
             ..*self
         }

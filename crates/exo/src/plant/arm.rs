@@ -36,7 +36,7 @@ pub struct ArmPhysics {
 }
 
 /// One arm in motion.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct ArmPlant<'a> {
     physics: &'a ArmPhysics,
     /// Angle, in rad.

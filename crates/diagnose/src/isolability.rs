@@ -1,0 +1,291 @@
+//! What recordings could tell apart at all, before anything is blamed.
+//!
+//! Every effect of the catalogue is put into the fitted model at a typical size, and what a refit of the base parameters
+//! absorbs of its force is taken away. How much is left says whether the recordings show the effect; the cosine between
+//! what two effects leave says whether they tell them apart. An effect that comes in several forms (a delay of the pressure
+//! or of the length, damping with or without pressure, a short or a long memory) counts with the form that is most like the
+//! other effect: near 1 there is a form of each that cannot be told from one of the other.
+//!
+//! Typical sizes are the middle of the ranges that the pages of the effects give, which come from the same sources.
+
+use pam_core::artifact::diagnosis::Isolability;
+use pam_core::effects::{AugmentedModel, CATALOGUE, Effect, Role, Term};
+use rayon::prelude::*;
+
+use crate::hypothesis::Guess;
+use crate::sheet::Ground;
+use crate::shift::shifted;
+use crate::state::{Setting, State};
+use crate::tangent::{Tangent, dot, norm};
+
+/// Instants that are compared, at most; memories run over all of them.
+const MOST_ROWS: usize = 6000;
+/// Standard errors that a residual must reach to be seen.
+const STANDARD_ERRORS: f64 = 3.0;
+/// Share of the noise that it must reach besides: nothing smaller is worth a name, and the noise of the channels in the
+/// columns of an effect reaches this by itself where the effect has nothing to act on.
+const LEAST_SHARE_OF_NOISE: f64 = 0.2;
+
+/// An effect at typical sizes: each shape with each amplitude alone is one form of it.
+struct Typical {
+    id: &'static str,
+    shapes: &'static [&'static [f64]],
+    amplitudes: &'static [f64],
+}
+
+/// SI. Shapes of `force-step` depend on the recordings; see [`shapes`].
+static TYPICAL: [Typical; 22] = [
+    Typical { id: "channel-delay", shapes: &[&[0.02, 0.0], &[0.0, 0.02], &[0.02, 0.02]], amplitudes: &[] },
+    Typical { id: "pressure-gauge-hysteresis", shapes: &[&[1e4]], amplitudes: &[2e3] },
+    // 1 N per hour and 2 N.
+    Typical { id: "force-drift", shapes: &[&[120.0]], amplitudes: &[1.0 / 3600.0, 2.0] },
+    // 100 N/mm.
+    Typical { id: "series-compliance", shapes: &[&[1e-5]], amplitudes: &[] },
+    Typical { id: "inertia", shapes: &[&[]], amplitudes: &[0.5] },
+    Typical { id: "slack", shapes: &[&[0.0]], amplitudes: &[] },
+    Typical { id: "pressure-lag", shapes: &[&[0.06]], amplitudes: &[] },
+    Typical { id: "threshold-pressure", shapes: &[&[3e4]], amplitudes: &[] },
+    Typical { id: "end-taper", shapes: &[&[]], amplitudes: &[1.0] },
+    Typical { id: "braid-lockup", shapes: &[&[0.2, 0.008]], amplitudes: &[1e4] },
+    Typical { id: "presliding-hysteresis", shapes: &[&[1e-3]], amplitudes: &[] },
+    Typical { id: "rubber-hysteresis", shapes: &[&[2e-3]], amplitudes: &[5.0] },
+    // Half of an f' of 1.2e-3.
+    Typical { id: "stribeck", shapes: &[&[5e-3]], amplitudes: &[6e-4] },
+    Typical { id: "rate-dependent-hysteresis", shapes: &[&[3e-4]], amplitudes: &[1e-4] },
+    Typical { id: "load-dependent-friction", shapes: &[&[]], amplitudes: &[0.03] },
+    Typical { id: "viscous-damping", shapes: &[&[]], amplitudes: &[100.0, 100.0] },
+    Typical { id: "viscoelastic-relaxation", shapes: &[&[3.0]], amplitudes: &[0.1, 0.1] },
+    Typical { id: "pressure-creep", shapes: &[&[3.0]], amplitudes: &[0.025, 0.025] },
+    Typical { id: "mullins-softening", shapes: &[&[0.03]], amplitudes: &[0.06] },
+    Typical { id: "thermal-softening", shapes: &[&[400.0]], amplitudes: &[0.1] },
+    Typical { id: "fatigue-wear", shapes: &[&[0.5], &[1.0]], amplitudes: &[0.02] },
+    Typical { id: "force-step", shapes: &[], amplitudes: &[2.0] },
+];
+
+/// What the recordings of `setting` could tell apart on top of `state`, where noise of `noise_n` (root mean square)
+/// amounts to `n_independent` instants.
+pub fn isolability(setting: &Setting<'_>, state: &State, noise_n: f64, n_independent: f64) -> Isolability {
+    let track = setting.track;
+    let usable: Vec<usize> = (0..track.n()).filter(|&at| track.counted[at] && !state.cut[at]).collect();
+    let stride = usable.len().div_ceil(MOST_ROWS).max(1);
+    let rows = usable.into_iter().step_by(stride).map(|at| (at, 1.0)).collect();
+    let tangent = Tangent::of(setting, state, &state.sheet, rows);
+    let jobs: Vec<(usize, Guess)> = CATALOGUE
+        .iter()
+        .enumerate()
+        .flat_map(|(index, &effect)| {
+            shapes(setting, effect).into_iter().map(move |shape| (index, Guess { effect, shape }))
+        })
+        .collect();
+    // Each form with what is left of it, in the order of the catalogue.
+    let forms: Vec<(usize, Vec<f64>)> = jobs
+        .par_iter()
+        .flat_map_iter(|(index, guess)| {
+            left_of_forms(setting, state, &tangent, guess).into_iter().map(move |left| (*index, left))
+        })
+        .collect();
+    let sizes: Vec<f64> = forms.iter().map(|(_, left)| norm(left)).collect();
+    let limit_n = noise_n * (STANDARD_ERRORS / n_independent.max(1.0).sqrt()).max(LEAST_SHARE_OF_NOISE);
+    let n = CATALOGUE.len();
+    let mut visible_n = vec![0.0; n];
+    let mut cosine = vec![vec![0.0; n]; n];
+    for ((index, _), size) in forms.iter().zip(&sizes) {
+        visible_n[*index] = f64::max(visible_n[*index], *size);
+    }
+    let seen: Vec<usize> = (0..forms.len()).filter(|&form| sizes[form] > limit_n).collect();
+    let pairs: Vec<(usize, usize)> = seen
+        .iter()
+        .enumerate()
+        .flat_map(|(position, &left)| seen[position + 1..].iter().map(move |&right| (left, right)))
+        .filter(|&(left, right)| forms[left].0 != forms[right].0)
+        .collect();
+    let cosines: Vec<f64> = pairs
+        .par_iter()
+        .map(|&(left, right)| (dot(&forms[left].1, &forms[right].1) / (sizes[left] * sizes[right])).abs().min(1.0))
+        .collect();
+    for ((left, right), found) in pairs.into_iter().zip(cosines) {
+        let (i, j) = (forms[left].0, forms[right].0);
+        cosine[i][j] = f64::max(cosine[i][j], found);
+        cosine[j][i] = cosine[i][j];
+    }
+    for (index, row) in cosine.iter_mut().enumerate() {
+        row[index] = 1.0;
+    }
+    Isolability { ids: CATALOGUE.iter().map(|effect| effect.page().id.to_owned()).collect(), visible_n, cosine }
+}
+
+/// Typical shapes of an effect.
+fn shapes(setting: &Setting<'_>, effect: &'static dyn Effect) -> Vec<Vec<f64>> {
+    let id = effect.page().id;
+    if id == "force-step" {
+        // Halfway through the longest recording.
+        let end_s = |range: &std::ops::Range<usize>| {
+            range.clone().last().map_or(0.0, |at| setting.track.instants[at].moment.time_s)
+        };
+        let longest = setting
+            .track
+            .recordings
+            .iter()
+            .enumerate()
+            .max_by(|left, right| end_s(left.1).total_cmp(&end_s(right.1)).then(right.0.cmp(&left.0)));
+        return longest.map(|(index, range)| vec![index as f64, 0.5 * end_s(range)]).into_iter().collect();
+    }
+    match typical(id) {
+        Some(typical) => typical.shapes.iter().map(|shape| shape.to_vec()).collect(),
+        None => vec![effect.shape().iter().map(|shape| shape.grid[shape.grid.len() / 2]).collect()],
+    }
+}
+
+fn typical(id: &str) -> Option<&'static Typical> {
+    TYPICAL.iter().find(|typical| typical.id == id)
+}
+
+/// What a refit leaves of each form of `guess`.
+fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess: &Guess) -> Vec<Vec<f64>> {
+    if guess.only_adds() {
+        let ground = Ground { track: setting.track, columns: setting.columns };
+        let k = guess.amplitudes().len();
+        let columns = ground.more_columns(&state.sheet, guess, &state.model);
+        let sizes = typical(guess.id()).map_or(&[][..], |typical| typical.amplitudes);
+        return (0..k)
+            .map(|column| {
+                let size = sizes.get(column).copied().unwrap_or(guess.amplitudes()[column].range.1);
+                tangent.left_of(|row| size * columns[row * k + column])
+            })
+            .collect();
+    }
+    let mut terms = terms(state);
+    let before_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms.clone()));
+    terms.push(Term { effect: guess.effect, shape: guess.shape.clone(), amplitudes: Vec::new() });
+    let after_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms));
+    vec![tangent.left_of(|row| after_n[row] - before_n[row])]
+}
+
+/// Effects of `state` with the values that were fitted.
+fn terms(state: &State) -> Vec<Term> {
+    let mut amplitudes = state.fit.amplitudes.iter().copied();
+    state
+        .guesses
+        .iter()
+        .map(|guess| Term {
+            effect: guess.effect,
+            shape: guess.shape.clone(),
+            amplitudes: amplitudes.by_ref().take(guess.amplitudes().len()).collect(),
+        })
+        .collect()
+}
+
+/// Force of `model` at every instant.
+fn force_n(setting: &Setting<'_>, model: &AugmentedModel) -> Vec<f64> {
+    let delays_s = model.terms().iter().filter(|term| term.effect.role() == Role::Shift).fold([0.0; 2], |sum, term| {
+        let more_s = term.effect.delays_s(&term.shape);
+        [sum[0] + more_s[0], sum[1] + more_s[1]]
+    });
+    let track = setting.track;
+    let mut force_n = Vec::with_capacity(track.n());
+    for range in &track.recordings {
+        let mut memory = model.start();
+        let moments = shifted(&track.instants[range.clone()], delays_s);
+        force_n.extend(moments.into_iter().map(|moment| memory.force_n(model, moment)));
+    }
+    force_n
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    fn of(protocols: &[&str]) -> Isolability {
+        let given = Given::of(protocols, &[]);
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let begin = std::time::Instant::now();
+        let found = isolability(&setting, &state, 0.3, 0.2 * given.track.n() as f64);
+        println!("{protocols:?}: {} instants, {:?}", given.track.n(), begin.elapsed());
+        for (index, id) in found.ids.iter().enumerate() {
+            let mut like: Vec<(f64, &str)> = (0..found.ids.len())
+                .filter(|&other| other != index)
+                .map(|other| (found.cosine[index][other], found.ids[other].as_str()))
+                .filter(|(cosine, _)| *cosine > 0.7)
+                .collect();
+            like.sort_by(|left, right| right.0.total_cmp(&left.0));
+            println!("  {id:26} {:8.3} N {like:.3?}", found.visible_n[index]);
+        }
+        found
+    }
+
+    fn cosine(found: &Isolability, left: &str, right: &str) -> f64 {
+        let index = |id: &str| found.ids.iter().position(|known| known == id).expect("an id");
+        found.cosine[index(left)][index(right)]
+    }
+
+    fn visible_n(found: &Isolability, id: &str) -> f64 {
+        found.visible_n[found.ids.iter().position(|known| known == id).expect("an id")]
+    }
+
+    #[test]
+    fn every_effect_has_a_typical_size_within_what_physics_allows() {
+        for effect in CATALOGUE {
+            let page = effect.page();
+            let typical = typical(page.id).expect(page.id);
+            assert_eq!(typical.amplitudes.len(), effect.amplitudes().len(), "{}", page.id);
+            for (size, amplitude) in typical.amplitudes.iter().zip(effect.amplitudes()) {
+                assert!((amplitude.range.0..=amplitude.range.1).contains(size), "{}", page.id);
+            }
+            for shape in typical.shapes {
+                assert_eq!(shape.len(), effect.shape().len(), "{}", page.id);
+                for (value, parameter) in shape.iter().zip(effect.shape()) {
+                    assert!((parameter.range.0..=parameter.range.1).contains(value), "{}", page.id);
+                }
+            }
+        }
+    }
+
+    /// PHYSICS.md B.4: damping and a late length are one group in an isobaric sweep (0.995).
+    #[test]
+    fn damping_and_a_late_channel_look_alike_in_an_isobaric_sweep() {
+        let sweep = of(&["length-chirp"]);
+        assert!(cosine(&sweep, "viscous-damping", "channel-delay") > 0.85);
+        assert!(cosine(&sweep, "viscous-damping", "presliding-hysteresis") < 0.7);
+        // An isometric sweep moves nothing that damping could act on.
+        let isometric = of(&["pressure-chirp"]);
+        assert!(visible_n(&isometric, "channel-delay") > 1.0);
+        assert!(visible_n(&isometric, "viscous-damping") < 1e-6);
+        assert_eq!(cosine(&isometric, "viscous-damping", "channel-delay"), 0.0);
+    }
+
+    #[test]
+    fn a_lag_and_a_delay_look_alike_in_slow_ramps() {
+        let ramps = of(&["isometric-ramps"]);
+        assert!(cosine(&ramps, "pressure-lag", "channel-delay") > 0.95);
+        assert!(cosine(&ramps, "pressure-lag", "presliding-hysteresis") < 0.7);
+    }
+
+    #[test]
+    fn a_matrix_is_symmetric_and_the_same_on_any_number_of_threads() {
+        let given = Given::of(&["multisine"], &[]);
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| isolability(&setting, &state, 0.3, 1000.0))
+        };
+        let found = run(1);
+        assert_eq!(found, run(2));
+        for (i, row) in found.cosine.iter().enumerate() {
+            assert_eq!(row[i], 1.0);
+            for (j, value) in row.iter().enumerate() {
+                assert_eq!(value.to_bits(), found.cosine[j][i].to_bits());
+                assert!((0.0..=1.0).contains(value));
+            }
+        }
+    }
+
+    #[test]
+    fn of_everything() {
+        of(&["isobaric-triangles"]);
+        of(&["multisine"]);
+        of(&["isobaric-triangles", "rate-ladder", "length-steps", "pressure-steps", "isometric-ramps"]);
+    }
+}
