@@ -200,19 +200,7 @@ mod tests {
         let given = Given::of(protocols, &[]);
         let setting = given.setting();
         let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
-        let begin = std::time::Instant::now();
-        let found = isolability(&setting, &state, 0.3, 0.2 * given.track.n() as f64);
-        println!("{protocols:?}: {} instants, {:?}", given.track.n(), begin.elapsed());
-        for (index, id) in found.ids.iter().enumerate() {
-            let mut like: Vec<(f64, &str)> = (0..found.ids.len())
-                .filter(|&other| other != index)
-                .map(|other| (found.cosine[index][other], found.ids[other].as_str()))
-                .filter(|(cosine, _)| *cosine > 0.7)
-                .collect();
-            like.sort_by(|left, right| right.0.total_cmp(&left.0));
-            println!("  {id:26} {:8.3} N {like:.3?}", found.visible_n[index]);
-        }
-        found
+        isolability(&setting, &state, 0.3, 0.2 * given.track.n() as f64)
     }
 
     fn cosine(found: &Isolability, left: &str, right: &str) -> f64 {
@@ -282,10 +270,26 @@ mod tests {
         }
     }
 
+    /// PHYSICS.md B.4, "random p and L": {viscous, L delay} 0.98, {p lag, p delay} 0.97, {wear, drift} alike; the rest apart.
     #[test]
-    fn of_everything() {
-        of(&["isobaric-triangles"]);
-        of(&["multisine"]);
-        of(&["isobaric-triangles", "rate-ladder", "length-steps", "pressure-steps", "isometric-ramps"]);
+    fn of_a_random_path_the_known_groups_are_left() {
+        let random = of(&["multisine"]);
+        assert!(cosine(&random, "viscous-damping", "channel-delay") > 0.9);
+        assert!(cosine(&random, "pressure-lag", "channel-delay") > 0.9);
+        assert!(cosine(&random, "fatigue-wear", "force-drift") > 0.9);
+        for other in
+            ["viscous-damping", "channel-delay", "viscoelastic-relaxation", "threshold-pressure", "braid-lockup"]
+        {
+            assert!(cosine(&random, "presliding-hysteresis", other) < 0.7, "{other}");
+        }
+        assert!(visible_n(&random, "presliding-hysteresis") > 1.0);
+    }
+
+    #[test]
+    fn what_the_noise_covers_is_like_nothing() {
+        let random = of(&["multisine"]);
+        assert!(visible_n(&random, "inertia") < 0.06);
+        let index = random.ids.iter().position(|id| id == "inertia").expect("an id");
+        assert_eq!(random.cosine[index].iter().filter(|&&cosine| cosine != 0.0).count(), 1);
     }
 }
