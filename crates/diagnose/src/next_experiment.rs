@@ -214,7 +214,7 @@ impl Run {
                 force_n
             })
             .collect();
-        let rows = stands_for_s.iter().copied().enumerate().collect();
+        let rows = stands_for_s.iter().enumerate().map(|(row, &weight_s)| (row..row + 1, weight_s)).collect();
         let tangent = Tangent::of(setting, state, &sheet, rows);
         Self { force_n, tangent }
     }
@@ -493,7 +493,7 @@ mod tests {
         assert!(of(&all, "pressure-chirp").pairs_n[0] < 1e-6);
     }
 
-    /// PHYSICS.md B.6: a delay of the force shows where damping does not act at all.
+    /// A delay of the force shows where damping does not act at all.
     #[test]
     fn damping_and_an_early_force_ask_for_a_pressure_chirp() {
         let (experiment, ..) =
