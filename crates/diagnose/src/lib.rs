@@ -4,11 +4,13 @@
 //! and [`joint`] fit base and effects together and judge them on held-out blocks. [`isolability`] says what the recordings
 //! could tell apart at all, [`next_experiment`] which one would tell more.
 
+pub mod artifact;
 pub mod base;
 mod check;
 pub mod coordinates;
 pub mod diagnose;
 pub mod error;
+pub mod explain;
 pub mod hypothesis;
 pub mod isolability;
 pub mod joint;
@@ -24,6 +26,7 @@ pub mod state;
 mod steps;
 pub mod structure;
 mod tangent;
+pub mod traces;
 pub mod track;
 pub mod trial;
 pub mod uncertainty;

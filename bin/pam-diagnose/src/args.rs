@@ -1,0 +1,104 @@
+//! Command line of `pam-diagnose`.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use pam_cli::{ReadArgs, RunArgs};
+use pam_core::artifact::diagnosis::DiagnoseConfig;
+use pam_core::effects::CATALOGUE;
+use pam_diagnosis::diagnose::MAX_EFFECTS;
+
+/// Diagnose where a force model and recordings differ, and which physics was left out.
+///
+/// Refits the base model to the recordings, looks where and how the residual exceeds the noise, weighs every effect of
+/// the catalogue on blocks of recording that it was not fitted to, and names what explains the mismatch; or says that
+/// nothing is missing, or that something is that has no name. The diagnosed model works wherever the model did.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    after_help = "Example: diagnose two recordings, judge on a third, read the report\n  \
+                  pam-diagnose run1.csv run2.csv --model model.json --holdout run3.csv --out diagnosis.json --out-model \
+                  augmented.json --report report.html\n\n\
+                  Example: what an effect is and what it looks like\n  \
+                  pam-diagnose --explain stribeck --figure stribeck.svg\n\n\
+                  Exit codes: 0 done and understood (consistent, explained, ambiguous); 1 done, and part of the mismatch \
+                  has no name (unexplained); 2 input or usage."
+)]
+pub(crate) struct Args {
+    /// Recordings to diagnose; - is standard input.
+    #[arg(value_name = "LOG", required_unless_present = "explain")]
+    pub(crate) logs: Vec<PathBuf>,
+
+    /// Model in question, as pam-identify wrote it.
+    #[arg(long, value_name = "MODEL.json", required_unless_present = "explain")]
+    pub(crate) model: Option<PathBuf>,
+
+    /// Diagnosis to write (pam-diagnosis/1); - is standard output.
+    #[arg(long, value_name = "DIAGNOSIS.json", required_unless_present_any = ["check", "explain"])]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Model with what was found to write (pam-model/1), for every program that takes a model.
+    #[arg(long, value_name = "AUGMENTED.json")]
+    pub(crate) out_model: Option<PathBuf>,
+
+    /// Recording to hold out and judge on; may be repeated.
+    #[arg(long, value_name = "LOG")]
+    pub(crate) holdout: Vec<PathBuf>,
+
+    /// Report to write (HTML, one self-contained file).
+    #[arg(long, value_name = "REPORT.html")]
+    pub(crate) report: Option<PathBuf>,
+
+    /// Excess over the noise floor that matters, in N; by default what makes the residual half as much again as the noise.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) matters_above_n: Option<f64>,
+
+    /// Most effects that may be named.
+    #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS as u32, value_parser = clap::value_parser!(u32).range(1..=10))]
+    pub(crate) max_effects: u32,
+
+    /// Effect that is not considered, by id; may be repeated.
+    #[arg(long, value_name = "ID", value_parser = known)]
+    pub(crate) exclude: Vec<String>,
+
+    /// Go on where ranges or correlations say that an instrument is wrong or the recording is of another muscle.
+    #[arg(long)]
+    pub(crate) accept_implausible: bool,
+
+    /// Print what the catalogue says of an effect, and stop; all lists every id.
+    #[arg(long, value_name = "ID", conflicts_with_all = ["logs", "model", "out", "out_model", "holdout", "report"])]
+    pub(crate) explain: Option<String>,
+
+    /// Figure of the explained effect to write (SVG): a loop with and without it, and the residual that it leaves.
+    #[arg(long, value_name = "SIGNATURE.svg", requires = "explain")]
+    pub(crate) figure: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) read: ReadArgs,
+
+    #[command(flatten)]
+    pub(crate) run: RunArgs,
+}
+
+impl Args {
+    /// Options as resolved.
+    pub(crate) fn config(&self) -> DiagnoseConfig {
+        let mut excluded = self.exclude.clone();
+        excluded.sort();
+        excluded.dedup();
+        DiagnoseConfig { matters_above_n: self.matters_above_n, max_effects: self.max_effects as usize, excluded }
+    }
+}
+
+/// An id of the catalogue.
+pub(crate) fn known(id: &str) -> Result<String, String> {
+    let ids = || CATALOGUE.iter().map(|effect| effect.page().id);
+    if ids().any(|known| known == id) {
+        return Ok(id.to_owned());
+    }
+    let near = match pam_cli::nearest(id, ids()) {
+        Some(near) => format!("did you mean {near}?"),
+        None => "pam-diagnose --explain all lists them".to_owned(),
+    };
+    Err(format!("no effect is called \"{id}\"; {near}"))
+}

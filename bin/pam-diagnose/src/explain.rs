@@ -1,0 +1,141 @@
+//! The catalogue on the terminal, and the figure of an effect.
+
+use anyhow::{Context as _, anyhow};
+use pam_cli::{Console, Output, Verdict, write_file};
+use pam_core::artifact::diagnosis::Coordinate;
+use pam_core::effects::{self, CATALOGUE, Effect, Page};
+use pam_diagnosis::explain::{Driven, signature};
+use pam_report::{SignatureFigure, SignaturePanel, SignatureSeries, Table, signature_figure};
+
+use crate::args::{Args, known};
+
+/// Columns that text is wrapped to.
+const WIDTH: usize = 100;
+
+/// Prints the page of effect `id`, or every id, and writes the figure if one is wanted.
+pub(crate) fn explain(args: &Args, console: &Console, id: &str) -> anyhow::Result<Verdict> {
+    if id == "all" {
+        anyhow::ensure!(args.figure.is_none(), "--figure draws one effect; name it instead of all");
+        write_file("-", list())?;
+        return Ok(Verdict::Accepted);
+    }
+    let id = known(id).map_err(|message| anyhow!("--explain: {message}"))?;
+    let effect = effects::effect(&id).context("an id of the catalogue")?;
+    let figure = args.figure.as_deref().filter(|_| !args.run.check).map(Output::open).transpose()?;
+    write_file("-", text(effect.page()))?;
+    if let Some(output) = figure {
+        let path = output.path().display().to_string();
+        output.commit(figure_of(effect)?.as_bytes())?;
+        if path != "-" {
+            console.note(format!("wrote {path}"));
+        }
+    }
+    Ok(Verdict::Accepted)
+}
+
+/// Every id with its name.
+fn list() -> String {
+    let mut table = Table::new(["id", "name"]);
+    for effect in CATALOGUE {
+        table.row([effect.page().id, effect.page().name]);
+    }
+    table.to_terminal()
+}
+
+/// The page of an effect.
+fn text(page: &Page) -> String {
+    let mut text = format!("{} ({})\n\n{}\n", capitalized(page.name), page.id, wrapped(page.summary, ""));
+    text.push_str("\nEquation\n");
+    for line in page.equation.split(",  ") {
+        text.push_str(&format!("  {}\n", line.trim()));
+    }
+    let mut symbols = Table::new(["symbol", "unit", "meaning"]);
+    for symbol in page.symbols {
+        symbols.row([symbol.symbol, symbol.unit, symbol.meaning]);
+    }
+    text.push_str(&format!("\n{}", symbols.to_terminal()));
+    for (title, words) in [("Holds", page.validity), ("Source", page.source), ("Signature", page.signature)] {
+        text.push_str(&format!("\n{title}\n{}\n", wrapped(words, "  ")));
+    }
+    text.push_str("\nConfused with\n");
+    for confusion in page.confused_with {
+        let words = format!("{}: {}. Told apart by {}.", confusion.id, ended(confusion.because), ended(confusion.test));
+        text.push_str(&wrapped(&words, "  "));
+        text.push('\n');
+    }
+    text.push_str(&format!("\nTest\n{}\n", wrapped(page.test, "  ")));
+    text.push_str(&format!("  pam-bench --protocol {} records it on the virtual bench\n", page.protocol));
+    text
+}
+
+fn ended(text: &str) -> &str {
+    text.trim_end_matches('.')
+}
+
+fn capitalized(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
+}
+
+/// `text` in lines of at most [`WIDTH`] columns, each behind `indent`.
+fn wrapped(text: &str, indent: &str) -> String {
+    let mut lines = vec![indent.to_owned()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().expect("there is a line");
+        let empty = line.len() == indent.len();
+        if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(format!("{indent}{word}"));
+        } else {
+            if !empty {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    lines.join("\n")
+}
+
+/// The figure of an effect as SVG.
+fn figure_of(effect: &'static dyn Effect) -> anyhow::Result<String> {
+    let found = signature(effect);
+    let (driven_scale, driven_label) = match found.driven {
+        Driven::Contraction => (1e2, "contraction (%)"),
+        Driven::Pressure => (1e-3, "pressure (kPa)"),
+        Driven::Time => (1.0, "time (s)"),
+    };
+    let (scale, label) = match found.coordinate {
+        Coordinate::Time => (1.0, "time (s)"),
+        Coordinate::Pressure => (1e-3, "pressure (kPa)"),
+        Coordinate::Contraction => (1e2, "contraction (%)"),
+        Coordinate::Speed => (1e3, "speed (mm/s)"),
+        Coordinate::TravelSinceReversal => (1e3, "travel since reversal (mm)"),
+        Coordinate::TimeSinceLastMove => (1.0, "time since last move (s)"),
+        Coordinate::Cycle => (1.0, "cycle"),
+        Coordinate::Force => (1.0, "force (N)"),
+    };
+    let scaled = |values: &[f64], scale: f64| -> Vec<f64> { values.iter().map(|value| value * scale).collect() };
+    let xs = scaled(&found.driven_values, driven_scale);
+    let series = |name: &str, xs: Vec<f64>, ys: Vec<f64>| SignatureSeries { name: name.to_owned(), xs, ys };
+    let residual_n = found.with_n.iter().zip(&found.without_n).map(|(with, without)| with - without).collect();
+    let page = effect.page();
+    Ok(signature_figure(&SignatureFigure {
+        title: format!("{}: {}", capitalized(page.name), found.path),
+        panels: vec![
+            SignaturePanel {
+                title: "Force".to_owned(),
+                x_label: driven_label.to_owned(),
+                y_label: "force (N)".to_owned(),
+                series: vec![
+                    series("eq. 11", xs.clone(), found.without_n),
+                    series("with the effect", xs, found.with_n),
+                ],
+            },
+            SignaturePanel {
+                title: "What eq. 11 leaves, before any refit".to_owned(),
+                x_label: label.to_owned(),
+                y_label: "residual (N)".to_owned(),
+                series: vec![series("residual", scaled(&found.coordinate_values, scale), residual_n)],
+            },
+        ],
+    })?)
+}

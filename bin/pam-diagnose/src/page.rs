@@ -1,0 +1,234 @@
+//! The report of a diagnosis, from the artifact and the samples behind it.
+
+use pam_core::artifact::diagnosis::{BeforeAfter, Coordinate, Evidence, Region, Verdict};
+use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
+use pam_core::artifact::{DiagnosisArtifact, InputRole, ModelArtifact};
+use pam_core::effects::{self, Page};
+use pam_diagnosis::traces::Trace;
+use pam_report::{
+    DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEvidence,
+    PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording, PageRegion,
+    PageUnknown, PageVerdict,
+};
+
+/// Everything that the report shows.
+pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: Vec<Trace>) -> DiagnosisPage {
+    let with_effects = !artifact.effects.is_empty();
+    DiagnosisPage {
+        title: title(model),
+        verdict: match artifact.verdict {
+            Verdict::Consistent => PageVerdict::Consistent,
+            Verdict::Explained => PageVerdict::Explained,
+            Verdict::Ambiguous => PageVerdict::Ambiguous,
+            Verdict::Unexplained => PageVerdict::Unexplained,
+        },
+        statement: artifact.statement.clone(),
+        warnings: artifact.warnings.clone(),
+        estimation: fit(&artifact.fit.estimation),
+        holdout: artifact.fit.holdout.as_ref().map(fit),
+        recordings: traces.into_iter().map(|trace| recording(trace, artifact, with_effects)).collect(),
+        regions: artifact.regions.iter().map(region).collect(),
+        effects: artifact.effects.iter().map(effect).collect(),
+        candidates: artifact
+            .candidates
+            .iter()
+            .map(|candidate| PageCandidate {
+                id: candidate.id.clone(),
+                name: name(&candidate.id),
+                evidence: evidence(&candidate.evidence),
+                explains: candidate.explains,
+                outcome: candidate.outcome.clone(),
+            })
+            .collect(),
+        unknown: PageUnknown {
+            unexplained_share: artifact.unexplained_share,
+            regions: artifact.unexplained_where.iter().map(region).collect(),
+            implausible: artifact
+                .implausible
+                .iter()
+                .map(|entry| PageImplausible {
+                    parameter: entry.parameter.clone(),
+                    value: entry.value,
+                    unit: entry.unit.clone(),
+                    plausible: entry.plausible,
+                    likely_cause: entry.likely_cause.clone(),
+                })
+                .collect(),
+        },
+        next_experiment: artifact.next_experiment.as_ref().map(|next| PageExperiment {
+            protocol: next.protocol.clone(),
+            separates: next.separates.clone(),
+            separation_n: next.separation_n,
+            instruction: next.instruction.clone(),
+        }),
+        isolability: Some(&artifact.isolability).filter(|isolability| !isolability.ids.is_empty()).map(|isolability| {
+            PageIsolability {
+                ids: isolability.ids.clone(),
+                visible_n: isolability.visible_n.clone(),
+                cosine: isolability.cosine.clone(),
+            }
+        }),
+        appendix: appendix(artifact),
+    }
+}
+
+fn title(model: &ModelArtifact) -> String {
+    let muscle = &model.geometry;
+    format!(
+        "Diagnosis of a muscle of {:.0} mm, radius {:.1} mm",
+        1e3 * muscle.rest_length_m,
+        1e3 * muscle.rest_radius_m
+    )
+}
+
+/// Page of an effect in the catalogue; a competitor without a name has none.
+fn catalogue(id: &str) -> Option<&'static Page> {
+    effects::effect(id).map(|effect| effect.page())
+}
+
+fn name(id: &str) -> String {
+    catalogue(id).map_or(String::new(), |page| page.name.to_owned())
+}
+
+fn fit(fit: &BeforeAfter) -> PageFit {
+    PageFit { rmse_before_n: fit.rmse_before_n, rmse_after_n: fit.rmse_after_n, noise_floor_n: fit.noise_floor_n }
+}
+
+fn coordinate(coordinate: Coordinate) -> PageCoordinate {
+    match coordinate {
+        Coordinate::Time => PageCoordinate::Time,
+        Coordinate::Pressure => PageCoordinate::Pressure,
+        Coordinate::Contraction => PageCoordinate::Contraction,
+        Coordinate::Speed => PageCoordinate::Speed,
+        Coordinate::TravelSinceReversal => PageCoordinate::TravelSinceReversal,
+        Coordinate::TimeSinceLastMove => PageCoordinate::TimeSinceLastMove,
+        Coordinate::Cycle => PageCoordinate::Cycle,
+        Coordinate::Force => PageCoordinate::Force,
+    }
+}
+
+fn region(region: &Region) -> PageRegion {
+    PageRegion {
+        coordinate: coordinate(region.coordinate),
+        from: region.from,
+        to: region.to,
+        share_of_excess: region.share_of_excess,
+        p_value: region.p_value,
+        recording: region.recording.as_deref().map(short_name),
+    }
+}
+
+fn evidence(evidence: &Evidence) -> PageEvidence {
+    let Evidence { log_ratio, rmse_without_n, rmse_with_n, blocks_improved, n_blocks, p_value } = *evidence;
+    PageEvidence { log_ratio, rmse_without_n, rmse_with_n, blocks_improved, n_blocks, p_value }
+}
+
+fn effect(effect: &pam_core::artifact::diagnosis::NamedEffect) -> PageEffect {
+    let page = catalogue(&effect.id);
+    PageEffect {
+        id: effect.id.clone(),
+        name: effect.name.clone(),
+        summary: page.map_or(String::new(), |page| page.summary.to_owned()),
+        signature: page.map_or(String::new(), |page| page.signature.to_owned()),
+        equation: effect.equation.clone(),
+        source: page.map_or(String::new(), |page| page.source.to_owned()),
+        parameters: effect.parameters.iter().map(parameter).collect(),
+        evidence: evidence(&effect.evidence),
+        alternatives: effect
+            .alternatives
+            .iter()
+            .map(|id| {
+                let confusion = page.and_then(|page| page.confused_with.iter().find(|confusion| confusion.id == id));
+                PageAlternative {
+                    id: id.clone(),
+                    name: name(id),
+                    because: confusion.map_or(String::new(), |confusion| confusion.because.to_owned()),
+                    test: confusion.map_or(String::new(), |confusion| confusion.test.to_owned()),
+                }
+            })
+            .collect(),
+        separating_test: effect.separating_test.clone(),
+    }
+}
+
+fn parameter(entry: &ParameterEntry) -> PageParameter {
+    PageParameter {
+        name: entry.name.clone(),
+        meaning: String::new(),
+        value: entry.value,
+        unit: entry.unit.clone(),
+        stderr: entry.stderr,
+        status: match entry.status {
+            ParameterStatus::Fitted => "fitted",
+            ParameterStatus::Fixed => "fixed",
+            ParameterStatus::Composite => "share of a composite",
+            ParameterStatus::AtBound => "at the end of its range",
+        }
+        .to_owned(),
+    }
+}
+
+fn recording(trace: Trace, artifact: &DiagnosisArtifact, with_effects: bool) -> PageRecording {
+    let scaled = |values: Vec<f64>, scale: f64| values.into_iter().map(|value| value * scale).collect();
+    let stretches = artifact
+        .regions
+        .iter()
+        .chain(&artifact.unexplained_where)
+        .filter(|region| region.coordinate == Coordinate::Time && region.recording.as_ref() == Some(&trace.path))
+        .map(|region| (region.from, region.to))
+        .collect();
+    PageRecording {
+        name: short_name(&trace.path),
+        time_s: trace.time_s,
+        pressure_kpa: scaled(trace.pressure_pa, 1e-3),
+        contraction_percent: scaled(trace.contraction_ratio, 1e2),
+        speed_mm_per_s: scaled(trace.speed_m_per_s, 1e3),
+        travel_mm: scaled(trace.travel_m, 1e3),
+        rest_s: trace.rest_s,
+        cycle: trace.cycle,
+        force_n: trace.force_n,
+        base_force_n: trace.base_n,
+        model_force_n: with_effects.then_some(trace.augmented_n),
+        settled: trace.settled,
+        stretches,
+        held_out: trace.held_out,
+    }
+}
+
+fn appendix(artifact: &DiagnosisArtifact) -> PageAppendix {
+    let config = &artifact.config;
+    let matters = match config.matters_above_n {
+        Some(limit_n) => format!("{limit_n} N"),
+        None => "what makes the residual half as much again as the noise floor".to_owned(),
+    };
+    let excluded = if config.excluded.is_empty() { "none".to_owned() } else { config.excluded.join(", ") };
+    PageAppendix {
+        tool: format!("{} {}", artifact.tool.name, artifact.tool.version),
+        inputs: artifact
+            .inputs
+            .iter()
+            .map(|input| PageInput {
+                role: match input.role {
+                    InputRole::Validation => "held out",
+                    InputRole::Estimation => "estimation",
+                    _ => "model",
+                }
+                .to_owned(),
+                path: input.path.clone(),
+                sha256: input.sha256.clone(),
+            })
+            .collect(),
+        options: vec![
+            ("excess that matters".to_owned(), matters),
+            ("most effects".to_owned(), config.max_effects.to_string()),
+            ("effects not considered".to_owned(), excluded),
+            ("seed".to_owned(), artifact.seed.to_string()),
+        ],
+    }
+}
+
+/// File name without folders and ending.
+fn short_name(path: &str) -> String {
+    let file = path.rsplit('/').next().unwrap_or(path);
+    file.strip_suffix(".gz").unwrap_or(file).trim_end_matches(".csv").to_owned()
+}

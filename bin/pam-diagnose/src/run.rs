@@ -1,0 +1,156 @@
+//! Files in, diagnosis out.
+
+use std::path::PathBuf;
+
+use anyhow::{Context as _, ensure};
+use pam_cli::{Console, Output, commit_all};
+use pam_core::artifact::diagnosis::{Isolability, Verdict};
+use pam_core::artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
+use pam_core::recording::{Recording, read_recording};
+use pam_diagnosis::artifact::{Agreement, Head};
+use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose};
+use pam_diagnosis::traces::traces;
+
+use crate::args::Args;
+use crate::{explain, page, tables};
+
+/// Samples of each recording that the report draws, at most.
+const REPORT_SAMPLES: usize = 20_000;
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
+    let console = args.run.start()?;
+    if let Some(id) = &args.explain {
+        return explain::explain(args, &console, id);
+    }
+    let model_path = args.model.as_deref().context("--model is missing")?;
+    if let Some(limit) = args.matters_above_n {
+        ensure!(
+            limit >= 0.0 && limit.is_finite(),
+            "--matters-above-n {limit} is no size of a force; give newtons from 0 up"
+        );
+    }
+    let from_stdin = args.logs.iter().chain(&args.holdout).filter(|path| path.as_os_str() == "-").count();
+    ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
+    for held_out in &args.holdout {
+        ensure!(
+            !args.logs.contains(held_out),
+            "{}: is fitted and held out as well; hold out a recording that the diagnosis does not see",
+            held_out.display()
+        );
+    }
+    let model_path_owned = model_path.to_owned();
+    let inputs = || args.logs.iter().chain(&args.holdout).chain([&model_path_owned]);
+    let open = |path: &Option<PathBuf>| -> anyhow::Result<Option<Output>> {
+        let path = path.as_deref().filter(|_| !args.run.check);
+        path.map(|path| Ok(Output::open(path)?.apart_from(inputs())?)).transpose()
+    };
+    let outputs = Outputs { out: open(&args.out)?, model: open(&args.out_model)?, report: open(&args.report)? };
+
+    let (model, model_sha256) = ModelArtifact::read(model_path)?;
+    let estimation = read_all(args, &console, &args.logs)?;
+    let holdout = read_all(args, &console, &args.holdout)?;
+    let mut hashes =
+        vec![Input { path: model_path.display().to_string(), sha256: model_sha256, role: InputRole::Model }];
+    hashes.extend(estimation.iter().map(|recording| input(recording, InputRole::Estimation)));
+    hashes.extend(holdout.iter().map(|recording| input(recording, InputRole::Validation)));
+    let request =
+        Request { estimation, holdout, model, config: args.config(), accept_implausible: args.accept_implausible };
+    if args.run.check {
+        check(request)?;
+        console.note("inputs are fine; nothing was diagnosed (--check)");
+        return Ok(pam_cli::Verdict::Accepted);
+    }
+    let found = diagnose(request)?;
+    let agreement = Agreement::of(&found)?;
+    let tool = Tool { name: "pam-diagnose".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
+    let head = Head { tool, inputs: hashes, seed: args.run.seed };
+    let isolability = Isolability { ids: Vec::new(), visible_n: Vec::new(), cosine: Vec::new() };
+    let artifact = found.artifact(head.clone(), &agreement, isolability, None);
+
+    console.text(tables::all(&artifact));
+    for warning in &artifact.warnings {
+        console.warn(warning);
+    }
+    let augmented = outputs.model.is_some().then(|| found.model_artifact(head, &agreement));
+    outputs.write(&console, &found, &artifact, augmented.as_ref())?;
+    Ok(match artifact.verdict {
+        Verdict::Consistent | Verdict::Explained | Verdict::Ambiguous => pam_cli::Verdict::Accepted,
+        Verdict::Unexplained => pam_cli::Verdict::Rejected,
+    })
+}
+
+/// What was asked for, opened before any work.
+struct Outputs {
+    out: Option<Output>,
+    model: Option<Output>,
+    report: Option<Output>,
+}
+
+impl Outputs {
+    /// Publishes everything together.
+    fn write(
+        self,
+        console: &Console,
+        found: &Diagnosis,
+        artifact: &DiagnosisArtifact,
+        augmented: Option<&ModelArtifact>,
+    ) -> anyhow::Result<()> {
+        let mut outputs = Vec::new();
+        if let Some(output) = self.out {
+            outputs.push((output, line_ended(serde_json::to_vec_pretty(artifact)?)));
+        }
+        if let (Some(output), Some(model)) = (self.model, augmented) {
+            outputs.push((output, line_ended(serde_json::to_vec_pretty(model)?)));
+        }
+        if let Some(output) = self.report {
+            let page = page::page(artifact, &found.model, traces(found, REPORT_SAMPLES)?);
+            outputs.push((output, pam_report::diagnosis_page(&page)?.into_bytes()));
+        }
+        let mut written: Vec<String> = outputs.iter().map(|(output, _)| output.path().display().to_string()).collect();
+        commit_all(outputs)?;
+        written.retain(|path| path != "-");
+        if !written.is_empty() {
+            console.note(format!("wrote {}", written.join(" and ")));
+        }
+        Ok(())
+    }
+}
+
+fn line_ended(mut json: Vec<u8>) -> Vec<u8> {
+    json.push(b'\n');
+    json
+}
+
+fn read_all(args: &Args, console: &Console, paths: &[PathBuf]) -> anyhow::Result<Vec<Recording>> {
+    let options = args.read.options();
+    let mut recordings = Vec::new();
+    let mut notes: Vec<(String, Vec<String>)> = Vec::new();
+    for path in paths {
+        let recording = read_recording(path, &options)?;
+        let mut said = recording.repairs.notes();
+        if !recording.ignored_columns.is_empty() {
+            said.push(format!("not used: {}", recording.ignored_columns.join(", ")));
+        }
+        for words in said {
+            match notes.iter_mut().find(|(known, _)| *known == words) {
+                Some((_, paths)) => paths.push(recording.path.clone()),
+                None => notes.push((words, vec![recording.path.clone()])),
+            }
+        }
+        recordings.push(recording);
+    }
+    // Files of one logger need the same repairs: say so once.
+    for (words, paths) in notes {
+        let others = match paths.len() {
+            1 => String::new(),
+            2 => " and another".to_owned(),
+            n => format!(" and {} others", n - 1),
+        };
+        console.note(format!("{}{others}: {words}", paths[0]));
+    }
+    Ok(recordings)
+}
+
+fn input(recording: &Recording, role: InputRole) -> Input {
+    Input { path: recording.path.clone(), sha256: recording.sha256.clone(), role }
+}

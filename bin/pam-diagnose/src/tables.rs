@@ -1,0 +1,130 @@
+//! What a person reads on the terminal.
+
+use pam_core::artifact::DiagnosisArtifact;
+use pam_core::artifact::diagnosis::{BeforeAfter, Verdict};
+use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
+use pam_diagnosis::words;
+use pam_report::Table;
+use pam_report::number::{engineering, engineering_with_stderr, probability, significant};
+
+/// Candidates that are listed.
+const CANDIDATES: usize = 5;
+/// Regions that are listed.
+const REGIONS: usize = 3;
+
+/// Verdict and everything that it rests on.
+pub(crate) fn all(artifact: &DiagnosisArtifact) -> String {
+    let mut text = format!("{}: {}\n", word(artifact.verdict), artifact.statement);
+    for part in [effects(artifact), Some(fit(artifact)), regions(artifact), candidates(artifact), next(artifact)] {
+        if let Some(part) = part {
+            text.push('\n');
+            text.push_str(&part);
+        }
+    }
+    text
+}
+
+fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Consistent => "Consistent",
+        Verdict::Explained => "Explained",
+        Verdict::Ambiguous => "Ambiguous",
+        Verdict::Unexplained => "Unexplained",
+    }
+}
+
+/// What was left out, with values.
+fn effects(artifact: &DiagnosisArtifact) -> Option<String> {
+    if artifact.effects.is_empty() {
+        return None;
+    }
+    let mut table = Table::new(["effect", "parameter", "value", "held-out blocks N", "improved", "p"]);
+    for effect in &artifact.effects {
+        let evidence = &effect.evidence;
+        let mut once = [
+            format!("{} → {}", significant(evidence.rmse_without_n, 3), significant(evidence.rmse_with_n, 3)),
+            format!("{} of {}", evidence.blocks_improved, evidence.n_blocks),
+            probability(evidence.p_value),
+        ];
+        let mut name = effect.id.clone();
+        for parameter in &effect.parameters {
+            let [gain, blocks, p] = std::mem::take(&mut once);
+            table.row([std::mem::take(&mut name), parameter.name.clone(), value(parameter), gain, blocks, p]);
+        }
+        for other in &effect.alternatives {
+            table.row([format!("  or {other}")]);
+        }
+    }
+    Some(format!("What was left out\n{}", table.to_terminal()))
+}
+
+fn value(entry: &ParameterEntry) -> String {
+    let value = match entry.stderr {
+        Some(stderr) => engineering_with_stderr(entry.value, stderr, &entry.unit),
+        None => engineering(entry.value, &entry.unit, 3),
+    };
+    if entry.status == ParameterStatus::AtBound { format!("{value}, at its bound") } else { value }
+}
+
+/// Residuals before and after.
+fn fit(artifact: &DiagnosisArtifact) -> String {
+    let mut table = Table::new(["residual, rms", "base N", "with effects N", "noise floor N"]);
+    let mut row = |name: &str, fit: &BeforeAfter| {
+        let after = if artifact.effects.is_empty() { "-".to_owned() } else { significant(fit.rmse_after_n, 3) };
+        let (before, floor) = (significant(fit.rmse_before_n, 3), significant(fit.noise_floor_n, 3));
+        table.row([name.to_owned(), before, after, floor]);
+    };
+    row("estimation", &artifact.fit.estimation);
+    if let Some(holdout) = &artifact.fit.holdout {
+        row("held out", holdout);
+    }
+    table.to_terminal()
+}
+
+/// Where the mismatch lies, and where what is left does.
+fn regions(artifact: &DiagnosisArtifact) -> Option<String> {
+    let mut table = Table::new(["where", "share", "p", ""]);
+    let left = artifact.unexplained_where.iter().map(|region| (region, "left without a name"));
+    let of_all = artifact.regions.iter().take(REGIONS).map(|region| (region, ""));
+    for (region, remark) in of_all.chain(left.take(REGIONS)) {
+        let recording = region.recording.as_deref().map_or(String::new(), |path| format!(", {path}"));
+        table.row([
+            format!("{}{recording}", words::place(region)),
+            format!("{:.0} %", 100.0 * region.share_of_excess),
+            probability(region.p_value),
+            remark.to_owned(),
+        ]);
+    }
+    let empty = artifact.regions.is_empty() && artifact.unexplained_where.is_empty();
+    (!empty).then(|| table.to_terminal())
+}
+
+/// What was weighed, the best first.
+fn candidates(artifact: &DiagnosisArtifact) -> Option<String> {
+    if artifact.candidates.is_empty() {
+        return None;
+    }
+    let mut table = Table::new(["candidate, alone", "explains", "evidence", "outcome"]);
+    for candidate in artifact.candidates.iter().take(CANDIDATES) {
+        table.row([
+            candidate.id.clone(),
+            format!("{:.0} %", 100.0 * candidate.explains),
+            format!("{:.1}", candidate.evidence.log_ratio),
+            candidate.outcome.clone(),
+        ]);
+    }
+    Some(table.to_terminal())
+}
+
+/// What to record next.
+fn next(artifact: &DiagnosisArtifact) -> Option<String> {
+    if let Some(next) = &artifact.next_experiment {
+        return Some(format!("Record next: {}: {}\n", next.protocol, next.instruction));
+    }
+    let lines: Vec<String> = artifact
+        .effects
+        .iter()
+        .map(|effect| format!("Test that decides on {}: {}\n", effect.id, effect.separating_test))
+        .collect();
+    (!lines.is_empty()).then(|| lines.concat())
+}

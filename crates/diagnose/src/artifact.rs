@@ -1,0 +1,395 @@
+//! A diagnosis as artifacts: what was found, and the model with it.
+
+use pam_core::artifact::diagnosis::{
+    BeforeAfter, DiagnosisArtifact, DiagnosisFit, Isolability, NextExperiment, SCHEMA, Verdict,
+};
+use pam_core::artifact::model::{
+    self, CompositeEntry, Correlation, Domain, FitReport, FitStatistics, ModelArtifact, ParameterEntry,
+    ParameterStatus, RecordingFit, SearchReport,
+};
+use pam_core::artifact::{Input, Tool};
+use pam_core::effects::Kind;
+use pam_core::force::Parameter;
+use pam_identification::evaluate::{Evaluation, evaluate, evaluate_augmented, noise_floor_n, trace_augmented};
+use pam_identification::prepare::Prepared;
+use pam_identification::search_space::Free;
+
+use crate::diagnose::Diagnosis;
+use crate::error::DiagnoseError;
+
+/// How an artifact begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Head {
+    /// Program that writes it.
+    pub tool: Tool,
+    /// Files that went into it.
+    pub inputs: Vec<Input>,
+    /// Seed of every random draw.
+    pub seed: u64,
+}
+
+/// Base model and augmented model against every recording, over all samples at the rate of the recording.
+///
+/// Events happened once, in an estimation recording: held-out recordings are judged without them.
+#[derive(Debug, Clone)]
+pub struct Agreement {
+    /// Base model, refitted, on the estimation recordings.
+    pub base_estimation: Evaluation,
+    /// Base model, refitted to the estimation recordings, on what was held out.
+    pub base_holdout: Evaluation,
+    /// Base model and effects on the estimation recordings.
+    pub estimation: Evaluation,
+    /// Base model and effects on what was held out.
+    pub holdout: Evaluation,
+    /// What the noise of all channels leaves of a perfect model on the estimation recordings, in N.
+    pub noise_floor_n: f64,
+    /// Independent samples that the estimation recordings are worth.
+    pub effective_samples: f64,
+}
+
+impl Agreement {
+    /// Of `diagnosis`.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Recording`] where samples cannot be read back.
+    pub fn of(diagnosis: &Diagnosis) -> Result<Self, DiagnoseError> {
+        let Diagnosis { estimation, holdout, base, augmented, model, .. } = diagnosis;
+        let rest_length_m = model.geometry.rest_length_m;
+        Ok(Self {
+            base_estimation: evaluate(estimation, base)?,
+            base_holdout: evaluate(holdout, base)?,
+            estimation: evaluate_augmented(estimation, augmented, model.direction, rest_length_m)?,
+            holdout: evaluate_augmented(holdout, &augmented.without_events(), model.direction, rest_length_m)?,
+            noise_floor_n: noise_floor_n(estimation, augmented.base())?,
+            effective_samples: effective_samples(diagnosis)?,
+        })
+    }
+}
+
+/// Samples over the number of them that share one residual: `1 + 2 Σ ρ`, summed until the correlation dies away. Where there
+/// are very many, thinned ones are counted.
+fn effective_samples(diagnosis: &Diagnosis) -> Result<f64, DiagnoseError> {
+    const MOST_LAGS: usize = 400;
+    let Diagnosis { estimation, augmented, model, .. } = diagnosis;
+    let (mut products, mut counts) = (vec![0.0; MOST_LAGS], vec![0.0; MOST_LAGS]);
+    let mut n_samples = 0.0;
+    for (index, prepared) in estimation.iter().enumerate() {
+        let trace = trace_augmented(prepared, augmented, model.direction, model.geometry.rest_length_m, index)?;
+        let residuals_n: Vec<f64> = trace
+            .force_n
+            .iter()
+            .zip(&trace.model_n)
+            .zip(&trace.settled)
+            .map(|((force_n, model_n), settled)| if *settled { force_n - model_n } else { 0.0 })
+            .collect();
+        for lag in 0..MOST_LAGS.min(residuals_n.len()) {
+            for (left, right) in residuals_n.iter().zip(&residuals_n[lag..]) {
+                products[lag] += left * right;
+            }
+            counts[lag] += (residuals_n.len() - lag) as f64;
+        }
+        n_samples += residuals_n.len() as f64;
+    }
+    let variance = products[0] / f64::max(counts[0], 1.0);
+    let mut together = 1.0;
+    for (product, count) in products.iter().zip(&counts).skip(1) {
+        let correlation = product / f64::max(*count, 1.0) / variance.max(f64::MIN_POSITIVE);
+        if correlation < 0.05 {
+            break;
+        }
+        together += 2.0 * correlation;
+    }
+    Ok(n_samples / together)
+}
+
+impl Diagnosis {
+    /// The diagnosis for other programs and for people.
+    ///
+    /// # Panics
+    /// Where `agreement` is of another diagnosis.
+    pub fn artifact(
+        &self,
+        head: Head,
+        agreement: &Agreement,
+        isolability: Isolability,
+        next_experiment: Option<NextExperiment>,
+    ) -> DiagnosisArtifact {
+        let noise_floor_n = self.sizes.floor_n;
+        let pair = |before: &FitStatistics, after: &FitStatistics| BeforeAfter {
+            rmse_before_n: before.rmse_n,
+            rmse_after_n: after.rmse_n,
+            noise_floor_n,
+        };
+        let held = agreement.base_holdout.together.zip(agreement.holdout.together);
+        DiagnosisArtifact {
+            schema: SCHEMA.to_owned(),
+            tool: head.tool,
+            inputs: head.inputs,
+            config: self.config.clone(),
+            seed: head.seed,
+            verdict: self.verdict,
+            statement: self.statement.clone(),
+            regions: self.regions.clone(),
+            effects: self.effects.clone(),
+            fit: DiagnosisFit {
+                estimation: pair(&together(&agreement.base_estimation), &together(&agreement.estimation)),
+                holdout: held.map(|(before, after)| pair(&before, &after)),
+            },
+            unexplained_share: self.unexplained_share,
+            unexplained_where: self.unexplained.clone(),
+            implausible: self.implausible.clone(),
+            candidates: self.candidates.clone(),
+            isolability,
+            next_experiment,
+            warnings: self.warnings(agreement),
+        }
+    }
+
+    /// The model with what was found, for every program that takes a model.
+    ///
+    /// # Panics
+    /// Where `agreement` is of another diagnosis.
+    pub fn model_artifact(&self, head: Head, agreement: &Agreement) -> ModelArtifact {
+        let prepared = || self.estimation.iter().chain(&self.holdout);
+        let statistics = agreement.estimation.each.iter().chain(&agreement.holdout.each);
+        let estimation = together(&agreement.estimation);
+        let matrix = self.uncertainty.correlation.row_iter().map(|row| row.iter().copied().collect()).collect();
+        ModelArtifact {
+            schema: model::SCHEMA.to_owned(),
+            tool: head.tool,
+            inputs: head.inputs,
+            config: self.model.config.clone(),
+            seed: head.seed,
+            geometry: self.model.geometry.clone(),
+            strand_modulus_pa: self.model.strand_modulus_pa,
+            form: self.model.form,
+            parameters: self.parameters(),
+            composites: self.composites(),
+            effects: self.entries.clone(),
+            correlation: Correlation { names: self.free.iter().map(|&name| name.to_owned()).collect(), matrix },
+            fit: FitReport {
+                estimation,
+                validation: agreement.holdout.together,
+                recordings: prepared()
+                    .zip(statistics)
+                    .map(|(prepared, &statistics)| RecordingFit { path: prepared.recording.path.clone(), statistics })
+                    .collect(),
+                noise_floor_n: agreement.noise_floor_n,
+                force_noise_n: force_noise_n(&self.estimation),
+                effective_samples: agreement.effective_samples,
+            },
+            domain: domain(&self.estimation),
+            direction: self.model.direction,
+            quality: prepared().map(|prepared| prepared.quality.clone()).collect(),
+            search: SearchReport {
+                // No swarm: the joint fit descends from the model in question.
+                starts: Vec::new(),
+                converged: true,
+                column_floor_rmse_n: estimation.rmse_n,
+            },
+            unbounded: None,
+            warnings: self.warnings(agreement),
+        }
+    }
+
+    /// Value of a free parameter or composite in the unit of artifacts, its standard error, and whether it presses against
+    /// its range; none where it was held.
+    fn found(&self, free: Free) -> Option<(f64, Option<f64>, bool)> {
+        let index = self.free.iter().position(|name| *name == free.name())?;
+        let parameters = self.augmented.base().parameters();
+        let at_bound = self.at_bound[index];
+        let stderr = self.uncertainty.base.get(index).copied().filter(|stderr| !at_bound && stderr.is_finite());
+        Some(match free {
+            Free::BladderSum => (parameters.of(Parameter::C10) + parameters.of(Parameter::C01), stderr, at_bound),
+            Free::One(parameter) => {
+                let value = parameter.from_artifact(parameters.of(parameter));
+                // The modulus is the inverse of what was fitted: δE = E² δ(1/E).
+                let scale = if parameter == Parameter::StrandCompliance { value * value } else { 1.0 };
+                (value, stderr.map(|stderr| scale * stderr), at_bound)
+            }
+        })
+    }
+
+    /// Parameters of eq. 11 as refitted beside the effects; fitted dimensions stay what they were.
+    fn parameters(&self) -> Vec<ParameterEntry> {
+        let refitted = self.augmented.base().parameters();
+        self.model
+            .parameters
+            .iter()
+            .map(|entry| {
+                let Some(parameter) = Parameter::ALL.into_iter().find(|known| known.artifact_name() == entry.name)
+                else {
+                    return ParameterEntry { stderr: None, status: ParameterStatus::Fixed, ..entry.clone() };
+                };
+                let value = parameter.from_artifact(refitted.of(parameter));
+                let shared = matches!(parameter, Parameter::C10 | Parameter::C01);
+                let sum = self.found(Free::BladderSum).filter(|_| shared);
+                let (stderr, status) = match (self.found(Free::One(parameter)), sum) {
+                    (Some((_, _, true)), _) | (None, Some((_, _, true))) => (None, ParameterStatus::AtBound),
+                    (Some((_, stderr, false)), _) => (
+                        stderr,
+                        if entry.status == ParameterStatus::Composite {
+                            ParameterStatus::Composite
+                        } else {
+                            ParameterStatus::Fitted
+                        },
+                    ),
+                    (None, Some((sum, stderr, false))) => {
+                        let share = if sum > 0.0 { value / sum } else { 0.5 };
+                        (stderr.map(|stderr| share * stderr), ParameterStatus::Composite)
+                    }
+                    (None, None) => (None, ParameterStatus::Fixed),
+                };
+                ParameterEntry { value, stderr, status, ..entry.clone() }
+            })
+            .collect()
+    }
+
+    /// Combinations with the values that they have now.
+    fn composites(&self) -> Vec<CompositeEntry> {
+        self.model
+            .composites
+            .iter()
+            .map(|entry| {
+                let radius_m = self.model.geometry.rest_radius_m;
+                let (free, scale) = match entry.name.as_str() {
+                    "c10 + c01" => (Free::BladderSum, 1.0),
+                    "k1 rest_radius^2" => (Free::One(Parameter::K1), radius_m * radius_m),
+                    _ => (Free::One(Parameter::RubberFriction), 1.0),
+                };
+                match self.found(free) {
+                    Some((value, stderr, _)) => CompositeEntry {
+                        value: value * scale,
+                        stderr: stderr.map(|stderr| stderr * scale),
+                        ..entry.clone()
+                    },
+                    None => entry.clone(),
+                }
+            })
+            .collect()
+    }
+
+    /// What a person should know before using diagnosis or model.
+    fn warnings(&self, agreement: &Agreement) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if !self.model.effects.is_empty() {
+            let ids: Vec<&str> = self.model.effects.iter().map(|entry| entry.id.as_str()).collect();
+            warnings.push(format!(
+                "the model in question had {} beyond eq. 11, which was left aside and weighed anew with the rest",
+                ids.join(", ")
+            ));
+        }
+        if self.verdict == Verdict::Unexplained {
+            warnings.push(
+                "part of the mismatch has no name: trust the model no further than the held-out error".to_owned(),
+            );
+        }
+        for effect in self.effects.iter().filter(|effect| !effect.alternatives.is_empty()) {
+            warnings.push(format!(
+                "what is named {} may be {} instead: these recordings cannot tell",
+                effect.id,
+                effect.alternatives.join(" or ")
+            ));
+        }
+        let at_bound = |entry: &&ParameterEntry| entry.status == ParameterStatus::AtBound;
+        for effect in &self.entries {
+            for parameter in effect.parameters.iter().filter(at_bound) {
+                warnings.push(format!(
+                    "{} of {} is at the end of its range, {:.4} {}: the effect may stand in for something else",
+                    parameter.name, effect.id, parameter.value, parameter.unit
+                ));
+            }
+        }
+        for (name, _) in self.free.iter().zip(&self.at_bound).filter(|(_, at_bound)| **at_bound) {
+            warnings
+                .push(format!("{name} is at the end of its range: eq. 11 still lacks something that it stands in for"));
+        }
+        for entry in &self.implausible {
+            let [low, high] = entry.plausible;
+            warnings.push(format!(
+                "{} = {} is outside what braided muscles have ({} to {}); a likely cause is {}",
+                entry.parameter,
+                plain(entry.value, &entry.unit),
+                plain(low, &entry.unit),
+                plain(high, &entry.unit),
+                entry.likely_cause
+            ));
+        }
+        let events: Vec<&str> = self
+            .augmented
+            .terms()
+            .iter()
+            .filter(|term| term.effect.kind() == Kind::Event)
+            .map(|term| term.effect.page().id)
+            .collect();
+        if !events.is_empty() {
+            warnings.push(format!(
+                "{} happened once, in an estimation recording: other recordings are judged and predicted without it",
+                events.join(", ")
+            ));
+        }
+        if let Some((before, after)) = agreement.base_holdout.together.zip(agreement.holdout.together)
+            && after.rmse_n > before.rmse_n
+            && !self.entries.is_empty()
+        {
+            warnings.push(format!(
+                "on what was held out the residual rises from {:.2} N to {:.2} N: the recordings differ in something else",
+                before.rmse_n, after.rmse_n
+            ));
+        }
+        if self.holdout.is_empty() {
+            warnings.push(
+                "no recording was held out: name one with --holdout to see what the effects are worth".to_owned(),
+            );
+        }
+        warnings
+    }
+}
+
+/// All recordings together; a diagnosis has at least one.
+fn together(evaluation: &Evaluation) -> FitStatistics {
+    evaluation.together.unwrap_or_else(|| evaluation.each[0])
+}
+
+/// A value with the prefix that base parameters are usually written with.
+fn plain(value: f64, unit: &str) -> String {
+    match unit {
+        "Pa" if value.abs() >= 1e8 => format!("{:.2} GPa", value * 1e-9),
+        "Pa" => format!("{:.1} kPa", value * 1e-3),
+        "1" if value.abs() < 0.1 => format!("{:.2}e-3", value * 1e3),
+        "1" => format!("{value:.3}"),
+        _ => format!("{value:.3} {unit}"),
+    }
+}
+
+/// White noise of the force over all recordings.
+fn force_noise_n(recordings: &[Prepared]) -> f64 {
+    let (mut squares, mut rows) = (0.0, 0.0);
+    for prepared in recordings {
+        if let Some(force) = prepared.quality.channel("force") {
+            let n = prepared.quality.n_rows as f64;
+            squares += n * force.noise * force.noise;
+            rows += n;
+        }
+    }
+    (squares / f64::max(rows, 1.0)).sqrt()
+}
+
+/// What `recordings` cover.
+fn domain(recordings: &[Prepared]) -> Domain {
+    let range = |name: &str| {
+        let channels = || recordings.iter().filter_map(|prepared| prepared.quality.channel(name));
+        [
+            channels().map(|channel| channel.lowest).fold(f64::INFINITY, f64::min),
+            channels().map(|channel| channel.highest).fold(f64::NEG_INFINITY, f64::max),
+        ]
+    };
+    let fastest = |rate: fn(&Prepared) -> f64| recordings.iter().map(rate).fold(0.0, f64::max);
+    Domain {
+        pressure_pa: range("pressure"),
+        length_m: range("length"),
+        force_n: range("force"),
+        length_rate_m_per_s: fastest(|prepared| prepared.quality.length_rate_m_per_s),
+        pressure_rate_pa_per_s: fastest(|prepared| prepared.quality.pressure_rate_pa_per_s),
+    }
+}
