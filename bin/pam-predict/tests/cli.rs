@@ -86,8 +86,11 @@ fn a_recording_without_force_is_predicted_too() {
     assert_eq!(refused.status.code(), Some(2));
 }
 
-/// The model with effects, each an id with its parameters as name, value and unit.
-fn with_effects(effects: &[(&str, &[(&str, f64, &str)])]) -> String {
+/// Name, value and unit.
+type Value<'a> = (&'a str, f64, &'a str);
+
+/// The model with effects, each an id with its parameters.
+fn with_effects(effects: &[(&str, &[Value<'_>])]) -> String {
     let entries: Vec<String> = effects
         .iter()
         .map(|(id, parameters)| {

@@ -43,6 +43,7 @@ pub enum Channels {
 ///
 /// # Errors
 /// Where the samples cannot be read back.
+#[expect(clippy::too_many_arguments, reason = "what to walk over and how; every caller names them all")]
 pub fn walk(
     recording: &Recording,
     direction: &Direction,

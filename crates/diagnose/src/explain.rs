@@ -263,6 +263,11 @@ impl Path {
                         length_m,
                         contraction_ratio,
                         speed_m_per_s: (after.1 - before.1) * per_s,
+                        slide_speed_m_per_s: if contracted_m == 0.0 {
+                            SLIDE_M_PER_PA * (after.0 - before.0) / (2.0 * step_s)
+                        } else {
+                            (after.1 - before.1) * per_s
+                        },
                         acceleration_m_per_s2: bend * muscle.rest_length_m / (step_s * step_s),
                         direction,
                         slide_m,

@@ -104,6 +104,8 @@ impl Separation {
 
 /// Separation as a share of the noise that counts as one.
 const LEAST_SHARE_OF_NOISE: f64 = 0.2;
+/// Rivals that are weighed against an effect, at most, the best first.
+const MOST_RIVALS: usize = 3;
 /// Share of the information of the best protocol that a shorter one must bring to be preferred.
 const NEARLY: f64 = 0.7;
 
@@ -212,7 +214,7 @@ impl Run {
                 force_n
             })
             .collect();
-        let rows = stands_for_s.iter().copied().enumerate().collect();
+        let rows = stands_for_s.iter().enumerate().map(|(row, &weight_s)| (row..row + 1, weight_s)).collect();
         let tangent = Tangent::of(setting, state, &sheet, rows);
         Self { force_n, tangent }
     }
@@ -236,12 +238,13 @@ pub(crate) fn next_experiment(
             look_closer(unexplained.first()?, left_n, best, domain)
         }
         Verdict::Ambiguous => {
-            // The effect with the most rivals near it comes first; the others are settled one after the other.
+            // The first that has rivals; others are settled one after the other.
             let (index, ids) = (0..best.guesses.len())
                 .map(|index| (index, alternatives(found, index)))
                 .find(|(_, ids)| !ids.is_empty())?;
             let mut explanations = vec![Explanation { id: best.guesses[index].id(), state: best.clone() }];
-            for rival in found.taken[index].rivals.iter().filter(|rival| ids.contains(&rival.guess.id())) {
+            let rivals = found.taken[index].rivals.iter().filter(|rival| ids.contains(&rival.guess.id()));
+            for rival in rivals.take(MOST_RIVALS) {
                 let mut guesses = best.guesses.clone();
                 guesses[index] = rival.guess.clone();
                 if let Some(state) = setting.fit(guesses, near, &best.model) {
@@ -464,13 +467,6 @@ mod tests {
         let reach = reach(&domain(), &explanations[0].state, false);
         let all = separations(&setting, &PROTOCOLS, &reach, &explanations);
         let (experiment, setpoints) = separate(&setting, &explanations, 0.3, &domain()).expect("an experiment");
-        for separation in &all {
-            println!(
-                "{:20} {:8.3} N {:6.0} s {:.2}",
-                separation.protocol, separation.pairs_n[0], separation.bench_s, separation.recorded_share
-            );
-        }
-        println!("{experiment:?}");
         (experiment, setpoints, all)
     }
 
@@ -494,10 +490,10 @@ mod tests {
         // A locked length shows neither; the stiffness changes with pressure and length otherwise than damping does, which
         // takes fast and wide motion at several pressures to see.
         assert_eq!(experiment.protocol, "length-chirp");
-        assert_eq!(of(&all, "pressure-chirp").pairs_n[0], 0.0);
+        assert!(of(&all, "pressure-chirp").pairs_n[0] < 1e-6);
     }
 
-    /// PHYSICS.md B.6: a delay of the force shows where damping does not act at all.
+    /// A delay of the force shows where damping does not act at all.
     #[test]
     fn damping_and_an_early_force_ask_for_a_pressure_chirp() {
         let (experiment, ..) =
@@ -574,7 +570,6 @@ mod tests {
         let effect = with.state.guesses[0].effect;
         let explanations = [with, Explanation { id: "nothing", state: without }];
         let (experiment, _) = confirm(&setting, effect, &explanations, 0.3, &domain()).expect("an experiment");
-        println!("{experiment:?}");
         assert_eq!(experiment.protocol, "minor-loops");
         assert!(experiment.separation_n > 0.5);
     }
@@ -586,13 +581,8 @@ mod tests {
         let with = explanation(&given, "viscoelastic-relaxation", &[3.0]);
         let without = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
         let explanations = [with, Explanation { id: "nothing", state: without }];
-        let begin = std::time::Instant::now();
         let reach = reach(&domain(), &explanations[0].state, false);
         let all = separations(&setting, &PROTOCOLS, &reach, &explanations);
-        println!("{:?}", begin.elapsed());
-        for protocol in &PROTOCOLS {
-            println!("{} {}", protocol.name, Rehearsal::of(&protocol.takes(&reach), &reach).track.n());
-        }
         assert_eq!(all.len(), PROTOCOLS.len());
         assert!(of(&all, "length-steps").pairs_n[0] > 10.0 * of(&all, "pressure-chirp").pairs_n[0]);
     }

@@ -240,11 +240,11 @@ impl Path {
         self.go(self.at.pressure_pa, self.at.length_m, duration_s);
     }
 
-    fn to_length(&mut self, length_m: f64, speed_m_per_s: f64) {
+    fn go_to_length(&mut self, length_m: f64, speed_m_per_s: f64) {
         self.go(self.at.pressure_pa, length_m, (length_m - self.at.length_m).abs() / speed_m_per_s);
     }
 
-    fn to_pressure(&mut self, pressure_pa: f64, rate_pa_per_s: f64) {
+    fn go_to_pressure(&mut self, pressure_pa: f64, rate_pa_per_s: f64) {
         self.go(pressure_pa, self.at.length_m, (pressure_pa - self.at.pressure_pa).abs() / rate_pa_per_s);
     }
 
@@ -257,8 +257,8 @@ impl Path {
 fn triangles(path: &mut Path, short_m: f64, cycles: usize, speed_m_per_s: f64) {
     let long_m = path.at.length_m;
     for _ in 0..cycles {
-        path.to_length(short_m, speed_m_per_s);
-        path.to_length(long_m, speed_m_per_s);
+        path.go_to_length(short_m, speed_m_per_s);
+        path.go_to_length(long_m, speed_m_per_s);
     }
 }
 
@@ -268,8 +268,8 @@ fn null(reach: &Reach<'_>) -> Vec<Take> {
     let mut path = Path::from(low_pa, rest_m);
     path.hold(30.0);
     for _ in 0..3 {
-        path.to_length(reach.length_m.1, reach.distance(1.0));
-        path.to_length(rest_m, reach.distance(1.0));
+        path.go_to_length(reach.length_m.1, reach.distance(1.0));
+        path.go_to_length(rest_m, reach.distance(1.0));
     }
     path.hold(30.0);
     vec![path.take(0.0)]
@@ -306,8 +306,8 @@ fn at_levels(
             continue;
         };
         let path = path.get_or_insert_with(|| Path::from(pressure_pa, long_m));
-        path.to_length(long_m, reach.distance(5.0));
-        path.to_pressure(pressure_pa, reach.pressure_rate(LEVEL_KPA_PER_S));
+        path.go_to_length(long_m, reach.distance(5.0));
+        path.go_to_pressure(pressure_pa, reach.pressure_rate(LEVEL_KPA_PER_S));
         act(path, short_m);
     }
     path.map(|path| path.take(0.0)).into_iter().collect()
@@ -318,9 +318,9 @@ fn isobaric_triangles(reach: &Reach<'_>) -> Vec<Take> {
     at_levels(reach, &levels_kpa, 0.21, reach.length_m.1, |path, short_m| {
         let long_m = path.at.length_m;
         triangles(path, short_m, 2, reach.distance(5.0));
-        path.to_length(short_m, reach.distance(5.0));
+        path.go_to_length(short_m, reach.distance(5.0));
         path.hold(10.0);
-        path.to_length(long_m, reach.distance(5.0));
+        path.go_to_length(long_m, reach.distance(5.0));
         path.hold(10.0);
     })
 }
@@ -345,12 +345,12 @@ fn minor_loops(reach: &Reach<'_>) -> Vec<Take> {
         let speed_m_per_s = reach.distance(speed_mm_per_s);
         for amplitude_mm in [10.0, 5.0, 2.0, 1.0, 0.5, 1.0, 2.0, 5.0, 10.0] {
             let amplitude_m = reach.distance(amplitude_mm).min(room_m);
-            path.to_length(center_m - amplitude_m, speed_m_per_s);
-            path.to_length(center_m + amplitude_m, speed_m_per_s);
-            path.to_length(center_m, speed_m_per_s);
+            path.go_to_length(center_m - amplitude_m, speed_m_per_s);
+            path.go_to_length(center_m + amplitude_m, speed_m_per_s);
+            path.go_to_length(center_m, speed_m_per_s);
         }
     }
-    path.to_length(long_m, reach.distance(5.0));
+    path.go_to_length(long_m, reach.distance(5.0));
     for share in [1.0, 0.8, 0.6, 0.4, 0.2] {
         triangles(&mut path, long_m + share * (short_m - long_m), 1, reach.distance(5.0));
     }
@@ -361,7 +361,7 @@ fn length_steps(reach: &Reach<'_>) -> Vec<Take> {
     at_levels(reach, &[100.0, 300.0, 450.0], 0.20, reach.length_m.1, |path, _| {
         for contraction in [0.0, 0.12, 0.05, 0.20, 0.10, 0.02, 0.15, 0.0] {
             if let Some(length_m) = reach.taut_length(path.at.pressure_pa, contraction) {
-                path.to_length(length_m, reach.distance(100.0));
+                path.go_to_length(length_m, reach.distance(100.0));
                 path.hold(60.0);
             }
         }
@@ -388,14 +388,14 @@ fn isometric_ramps(reach: &Reach<'_>) -> Vec<Take> {
         let knee_pa = reach.pressure(120.0).max(low_pa);
         let (slow, fast) = (reach.pressure_rate(10.0), reach.pressure_rate(50.0));
         for _ in 0..2 {
-            path.to_pressure(knee_pa, slow);
-            path.to_pressure(reach.pressure_pa.1, fast);
-            path.to_pressure(knee_pa, fast);
-            path.to_pressure(low_pa, slow);
+            path.go_to_pressure(knee_pa, slow);
+            path.go_to_pressure(reach.pressure_pa.1, fast);
+            path.go_to_pressure(knee_pa, fast);
+            path.go_to_pressure(low_pa, slow);
         }
         for _ in 0..3 {
-            path.to_pressure(knee_pa, slow);
-            path.to_pressure(low_pa, slow);
+            path.go_to_pressure(knee_pa, slow);
+            path.go_to_pressure(low_pa, slow);
         }
     })
 }
@@ -404,7 +404,7 @@ fn pressure_steps(reach: &Reach<'_>) -> Vec<Take> {
     at_lengths(reach, &[0.02, 0.10, 0.18], |path| {
         let low_pa = path.at.pressure_pa;
         for level_kpa in [100.0, 400.0, 200.0, 500.0, 300.0, 50.0, 350.0] {
-            path.to_pressure(reach.pressure(level_kpa).max(low_pa), reach.pressure_rate(500.0));
+            path.go_to_pressure(reach.pressure(level_kpa).max(low_pa), reach.pressure_rate(500.0));
             path.hold(60.0);
         }
     })
@@ -449,7 +449,7 @@ fn length_chirp(reach: &Reach<'_>) -> Vec<Take> {
     at_levels(reach, &[100.0, 300.0, 450.0], 0.14, reach.length(0.06), |path, short_m| {
         let (pressure_pa, long_m) = (path.at.pressure_pa, path.at.length_m);
         let (center_m, amplitude_m) = (0.5 * (short_m + long_m), 0.5 * (long_m - short_m));
-        path.to_length(center_m, reach.distance(5.0));
+        path.go_to_length(center_m, reach.distance(5.0));
         chirp(path, 0.05, 8.0, 120.0, |phase, _, share| {
             (pressure_pa, center_m - amplitude_m * 0.075_f64.powf(share) * phase.sin())
         });
@@ -558,7 +558,7 @@ fn endurance(reach: &Reach<'_>) -> Vec<Take> {
     };
     let rate_pa_per_s = reach.pressure_rate(50.0);
     let probe = |path: &mut Path| {
-        path.to_pressure(probe_pa, rate_pa_per_s);
+        path.go_to_pressure(probe_pa, rate_pa_per_s);
         triangles(path, probe_m, 1, reach.distance(5.0));
     };
     let mut path = Path::from(probe_pa, long_m);
@@ -566,7 +566,7 @@ fn endurance(reach: &Reach<'_>) -> Vec<Take> {
     for block in 1..=20 {
         let block_pa = reach.pressure(if block % 2 == 1 { 150.0 } else { 400.0 });
         let Some(short_m) = reach.taut_length(block_pa, 0.18).filter(|short_m| *short_m < long_m) else { continue };
-        path.to_pressure(block_pa, rate_pa_per_s);
+        path.go_to_pressure(block_pa, rate_pa_per_s);
         // One second from end to end.
         triangles(&mut path, short_m, 10, long_m - short_m);
         if block % 5 == 0 {
@@ -591,10 +591,10 @@ fn dwell(reach: &Reach<'_>) -> Vec<Take> {
     let mut path = Path::from(pressure_pa, long_m);
     for wait_s in [0.1, 1.0, 10.0, 100.0] {
         for share in [0.5, 1.0] {
-            path.to_length(long_m + share * (short_m - long_m), reach.distance(1.0));
+            path.go_to_length(long_m + share * (short_m - long_m), reach.distance(1.0));
             path.hold(wait_s);
         }
-        path.to_length(long_m, reach.distance(1.0));
+        path.go_to_length(long_m, reach.distance(1.0));
         path.hold(wait_s);
     }
     vec![path.take(0.0)]
