@@ -84,7 +84,7 @@ pub(crate) struct Args {
     pub(crate) explain: Option<String>,
 
     /// Figure of the explained effect to write (SVG): a loop with and without it, and the residual that it leaves.
-    #[arg(long, value_name = "SIGNATURE.svg", requires = "explain")]
+    #[arg(long, value_name = "SIGNATURE.svg")]
     pub(crate) figure: Option<PathBuf>,
 
     #[command(flatten)]

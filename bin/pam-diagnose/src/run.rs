@@ -22,6 +22,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     if let Some(id) = &args.explain {
         return explain::explain(args, &console, id);
     }
+    // A requirement on the command line would not hold: what --explain excludes is there.
+    ensure!(
+        args.figure.is_none(),
+        "--figure draws an effect; name it with --explain (figures of a diagnosis are in --report)"
+    );
     let model_path = args.model.as_deref().context("--model is missing")?;
     if let Some(limit) = args.matters_above_n {
         ensure!(

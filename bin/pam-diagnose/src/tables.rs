@@ -119,7 +119,7 @@ fn candidates(artifact: &DiagnosisArtifact) -> Option<String> {
 /// What to record next.
 fn next(artifact: &DiagnosisArtifact) -> Option<String> {
     if let Some(next) = &artifact.next_experiment {
-        return Some(format!("Record next: {}: {}\n", next.protocol, next.instruction));
+        return Some(format!("What to record next: {}\n", next.instruction));
     }
     let lines: Vec<String> = artifact
         .effects
