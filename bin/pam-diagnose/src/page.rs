@@ -28,7 +28,7 @@ pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: 
         estimation: fit(&artifact.fit.estimation),
         holdout: artifact.fit.holdout.as_ref().map(fit),
         recordings: traces.into_iter().map(|trace| recording(trace, artifact, with_effects)).collect(),
-        regions: artifact.regions.iter().map(region).collect(),
+        regions: significant(&artifact.regions).map(region).collect(),
         effects: artifact.effects.iter().map(effect).collect(),
         candidates: artifact
             .candidates
@@ -43,7 +43,7 @@ pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: 
             .collect(),
         unknown: PageUnknown {
             unexplained_share: artifact.unexplained_share,
-            regions: artifact.unexplained_where.iter().map(region).collect(),
+            regions: significant(&artifact.unexplained_where).map(region).collect(),
             implausible: artifact
                 .implausible
                 .iter()
@@ -58,7 +58,8 @@ pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: 
         },
         next_experiment: artifact.next_experiment.as_ref().map(|next| PageExperiment {
             protocol: next.protocol.clone(),
-            separates: next.separates.clone(),
+            // What has no name is nothing that a reader could look up.
+            separates: next.separates.iter().filter(|id| catalogue(id).is_some()).cloned().collect(),
             separation_n: next.separation_n,
             instruction: next.instruction.clone(),
         }),
@@ -106,6 +107,18 @@ fn coordinate(coordinate: Coordinate) -> PageCoordinate {
         Coordinate::Cycle => PageCoordinate::Cycle,
         Coordinate::Force => PageCoordinate::Force,
     }
+}
+
+/// Probability by chance above which a region is not shown.
+const CHANCE: f64 = 0.05;
+
+/// The first of `regions`, and of the others those that are hardly there by chance.
+pub(crate) fn significant(regions: &[Region]) -> impl Iterator<Item = &Region> {
+    regions
+        .iter()
+        .enumerate()
+        .filter(|(index, region)| *index == 0 || region.p_value < CHANCE)
+        .map(|(_, region)| region)
 }
 
 fn region(region: &Region) -> PageRegion {
@@ -182,10 +195,8 @@ fn parameter(entry: &ParameterEntry) -> PageParameter {
 
 fn recording(trace: Trace, artifact: &DiagnosisArtifact, with_effects: bool) -> PageRecording {
     let scaled = |values: Vec<f64>, scale: f64| values.into_iter().map(|value| value * scale).collect();
-    let stretches = artifact
-        .regions
-        .iter()
-        .chain(&artifact.unexplained_where)
+    let stretches = significant(&artifact.regions)
+        .chain(significant(&artifact.unexplained_where))
         .filter(|region| region.coordinate == Coordinate::Time && region.recording.as_ref() == Some(&trace.path))
         .map(|region| (region.from, region.to))
         .collect();

@@ -7,6 +7,8 @@ use pam_diagnosis::words;
 use pam_report::Table;
 use pam_report::number::{engineering, engineering_with_stderr, probability, significant};
 
+use crate::page;
+
 /// Candidates that are listed.
 const CANDIDATES: usize = 5;
 /// Regions that are listed.
@@ -84,8 +86,10 @@ fn fit(artifact: &DiagnosisArtifact) -> String {
 /// Where the mismatch lies, and where what is left does.
 fn regions(artifact: &DiagnosisArtifact) -> Option<String> {
     let mut table = Table::new(["where", "share", "p", ""]);
-    let left = artifact.unexplained_where.iter().map(|region| (region, "left without a name"));
-    let of_all = artifact.regions.iter().take(REGIONS).map(|region| (region, ""));
+    let left = page::significant(&artifact.unexplained_where).map(|region| (region, "left without a name"));
+    // Where nothing is named, what is left is all there is.
+    let of_all = if artifact.effects.is_empty() && !artifact.unexplained_where.is_empty() { 0 } else { REGIONS };
+    let of_all = page::significant(&artifact.regions).take(of_all).map(|region| (region, ""));
     for (region, remark) in of_all.chain(left.take(REGIONS)) {
         let recording = region.recording.as_deref().map_or(String::new(), |path| format!(", {path}"));
         table.row([

@@ -264,7 +264,7 @@ fn candidates(found: &Found) -> Vec<Candidate> {
             } else if explains < 0.02 {
                 "explains nothing".to_owned()
             } else if taken.is_empty() {
-                "gains no more than chance or what does not matter".to_owned()
+                "gains too little to be named".to_owned()
             } else {
                 "explains less than what was named, and nothing beside it".to_owned()
             };

@@ -95,7 +95,7 @@ pub(super) fn unknown(page: &DiagnosisPage) -> String {
 /// Section: what to record next.
 pub(super) fn next(experiment: Option<&PageExperiment>) -> String {
     let Some(experiment) = experiment else {
-        return paragraph("Nothing: no protocol of the bench would tell more than these recordings do.");
+        return paragraph("Nothing: nothing is in question that another recording would decide.");
     };
     let (protocol, instruction) = (escaped(&experiment.protocol), escaped(&experiment.instruction));
     let mut html = format!("<p><strong>{protocol}</strong></p>\n<p>{instruction}</p>\n");

@@ -1,5 +1,6 @@
 //! Pieces of the document.
 
+use super::PageSymbol;
 use crate::escape::escaped;
 use crate::number::significant;
 
@@ -41,6 +42,21 @@ pub(super) fn table(table: &crate::Table) -> String {
 pub(super) fn equation(text: &str) -> String {
     let lines: Vec<String> = text.split(",  ").map(|line| format!("<span>{}</span>", scripts(line.trim()))).collect();
     format!("<div class=\"equation\">{}</div>\n", lines.join("\n"))
+}
+
+/// Symbols of an equation with unit and meaning, each symbol set as in the equation.
+pub(super) fn symbols(symbols: &[PageSymbol]) -> String {
+    let rows: String = symbols
+        .iter()
+        .map(|PageSymbol { symbol, unit, meaning }| {
+            let (unit, meaning) = (escaped(unit), escaped(meaning));
+            format!("<tr><td><em>{}</em></td><td>{unit}</td><td>{meaning}</td></tr>\n", scripts(symbol))
+        })
+        .collect();
+    format!(
+        "<div class=\"scroll\">\n<table>\n<thead><tr><th>symbol</th><th>unit</th><th>meaning and usual range</th></tr></thead>\n\
+         <tbody>\n{rows}</tbody>\n</table>\n</div>\n"
+    )
 }
 
 /// Subscripts of symbols of one or two letters; longer names with `_` are left as they are.

@@ -1,6 +1,6 @@
 //! Section: which effects were left out of the model.
 
-use super::html::{equation, heading, newtons, paragraph, percent, remark, table};
+use super::html::{equation, heading, newtons, paragraph, percent, remark, symbols, table};
 use super::{DiagnosisPage, PageAlternative, PageCandidate, PageEffect, PageEvidence, PageParameter, PageVerdict};
 use crate::escape::escaped;
 use crate::number::{engineering, engineering_with_stderr, probability, significant};
@@ -31,11 +31,7 @@ fn effect(effect: &PageEffect) -> String {
     html.push_str(&paragraph(&effect.summary));
     html.push_str(&equation(&effect.equation));
     if !effect.symbols.is_empty() {
-        let mut symbols = Table::new(["symbol", "unit", "meaning and usual range"]);
-        for symbol in &effect.symbols {
-            symbols.row([symbol.symbol.clone(), symbol.unit.clone(), symbol.meaning.clone()]);
-        }
-        html.push_str(&table(&symbols));
+        html.push_str(&symbols(&effect.symbols));
     }
     if !effect.validity.is_empty() {
         html.push_str(&remark(&format!("Holds: {}", effect.validity)));
