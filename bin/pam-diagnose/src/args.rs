@@ -19,6 +19,8 @@ use pam_diagnosis::diagnose::MAX_EFFECTS;
     after_help = "Example: diagnose two recordings, judge on a third, read the report\n  \
                   pam-diagnose run1.csv run2.csv --model model.json --holdout run3.csv --out diagnosis.json --out-model \
                   augmented.json --report report.html\n\n\
+                  Example: what could these recordings show, and what to record next\n  \
+                  pam-diagnose run1.csv --model model.json --isolability --next-experiment setpoints.csv\n\n\
                   Example: what an effect is and what it looks like\n  \
                   pam-diagnose --explain stribeck --figure stribeck.svg\n\n\
                   Exit codes: 0 done and understood (consistent, explained, ambiguous); 1 done, and part of the mismatch \
@@ -34,7 +36,11 @@ pub(crate) struct Args {
     pub(crate) model: Option<PathBuf>,
 
     /// Diagnosis to write (pam-diagnosis/1); - is standard output.
-    #[arg(long, value_name = "DIAGNOSIS.json", required_unless_present_any = ["check", "explain"])]
+    #[arg(
+        long,
+        value_name = "DIAGNOSIS.json",
+        required_unless_present_any = ["check", "explain", "isolability", "next_experiment"]
+    )]
     pub(crate) out: Option<PathBuf>,
 
     /// Model with what was found to write (pam-model/1), for every program that takes a model.
@@ -48,6 +54,14 @@ pub(crate) struct Args {
     /// Report to write (HTML, one self-contained file).
     #[arg(long, value_name = "REPORT.html")]
     pub(crate) report: Option<PathBuf>,
+
+    /// Path of the recording that would tell most to write (CSV: time_s, pressure_kPa, length_mm), for a rig to follow.
+    #[arg(long, value_name = "SETPOINTS.csv")]
+    pub(crate) next_experiment: Option<PathBuf>,
+
+    /// Print which effects these recordings could tell apart at all, whatever is found in them.
+    #[arg(long)]
+    pub(crate) isolability: bool,
 
     /// Excess over the noise floor that matters, in N; by default what makes the residual half as much again as the noise.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
@@ -66,11 +80,11 @@ pub(crate) struct Args {
     pub(crate) accept_implausible: bool,
 
     /// Print what the catalogue says of an effect, and stop; all lists every id.
-    #[arg(long, value_name = "ID", conflicts_with_all = ["logs", "model", "out", "out_model", "holdout", "report"])]
+    #[arg(long, value_name = "ID", conflicts_with_all = ["logs", "model", "out", "out_model", "holdout", "report", "next_experiment", "isolability"])]
     pub(crate) explain: Option<String>,
 
     /// Figure of the explained effect to write (SVG): a loop with and without it, and the residual that it leaves.
-    #[arg(long, value_name = "SIGNATURE.svg", requires = "explain")]
+    #[arg(long, value_name = "SIGNATURE.svg")]
     pub(crate) figure: Option<PathBuf>,
 
     #[command(flatten)]

@@ -3,12 +3,13 @@
 use pam_core::artifact::diagnosis::{BeforeAfter, Coordinate, Evidence, Region, Verdict};
 use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
 use pam_core::artifact::{DiagnosisArtifact, InputRole, ModelArtifact};
-use pam_core::effects::{self, Page};
+use pam_core::effects::page::Confusion;
+use pam_core::effects::{self, Page, Symbol};
 use pam_diagnosis::traces::Trace;
 use pam_report::{
     DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEvidence,
     PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording, PageRegion,
-    PageUnknown, PageVerdict,
+    PageSymbol, PageUnknown, PageVerdict,
 };
 
 /// Everything that the report shows.
@@ -125,29 +126,40 @@ fn evidence(evidence: &Evidence) -> PageEvidence {
 
 fn effect(effect: &pam_core::artifact::diagnosis::NamedEffect) -> PageEffect {
     let page = catalogue(&effect.id);
+    let confusions = page.map_or(&[][..], |page| page.confused_with);
     PageEffect {
         id: effect.id.clone(),
         name: effect.name.clone(),
         summary: page.map_or(String::new(), |page| page.summary.to_owned()),
         signature: page.map_or(String::new(), |page| page.signature.to_owned()),
         equation: effect.equation.clone(),
+        symbols: page.map_or(&[][..], |page| page.symbols).iter().map(symbol).collect(),
+        validity: page.map_or(String::new(), |page| page.validity.to_owned()),
         source: page.map_or(String::new(), |page| page.source.to_owned()),
         parameters: effect.parameters.iter().map(parameter).collect(),
         evidence: evidence(&effect.evidence),
-        alternatives: effect
-            .alternatives
+        alternatives: effect.alternatives.iter().map(|id| alternative(id, confusions)).collect(),
+        look_alikes: confusions
             .iter()
-            .map(|id| {
-                let confusion = page.and_then(|page| page.confused_with.iter().find(|confusion| confusion.id == id));
-                PageAlternative {
-                    id: id.clone(),
-                    name: name(id),
-                    because: confusion.map_or(String::new(), |confusion| confusion.because.to_owned()),
-                    test: confusion.map_or(String::new(), |confusion| confusion.test.to_owned()),
-                }
-            })
+            .filter(|confusion| !effect.alternatives.iter().any(|id| id == confusion.id))
+            .map(|confusion| alternative(confusion.id, confusions))
             .collect(),
         separating_test: effect.separating_test.clone(),
+    }
+}
+
+fn symbol(symbol: &Symbol) -> PageSymbol {
+    PageSymbol { symbol: symbol.symbol.to_owned(), unit: symbol.unit.to_owned(), meaning: symbol.meaning.to_owned() }
+}
+
+/// Effect `id` with what the page of the effect that it is mistaken for says of it.
+fn alternative(id: &str, confusions: &[Confusion]) -> PageAlternative {
+    let confusion = confusions.iter().find(|confusion| confusion.id == id);
+    PageAlternative {
+        id: id.to_owned(),
+        name: name(id),
+        because: confusion.map_or(String::new(), |confusion| confusion.because.to_owned()),
+        test: confusion.map_or(String::new(), |confusion| confusion.test.to_owned()),
     }
 }
 

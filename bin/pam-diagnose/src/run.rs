@@ -1,10 +1,10 @@
 //! Files in, diagnosis out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
 use pam_cli::{Console, Output, commit_all};
-use pam_core::artifact::diagnosis::{Isolability, Verdict};
+use pam_core::artifact::diagnosis::Verdict;
 use pam_core::artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
 use pam_core::recording::{Recording, read_recording};
 use pam_diagnosis::artifact::{Agreement, Head};
@@ -22,6 +22,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     if let Some(id) = &args.explain {
         return explain::explain(args, &console, id);
     }
+    // A requirement on the command line would not hold: what --explain excludes is there.
+    ensure!(
+        args.figure.is_none(),
+        "--figure draws an effect; name it with --explain (figures of a diagnosis are in --report)"
+    );
     let model_path = args.model.as_deref().context("--model is missing")?;
     if let Some(limit) = args.matters_above_n {
         ensure!(
@@ -38,13 +43,18 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
             held_out.display()
         );
     }
-    let model_path_owned = model_path.to_owned();
-    let inputs = || args.logs.iter().chain(&args.holdout).chain([&model_path_owned]);
+    let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.model);
     let open = |path: &Option<PathBuf>| -> anyhow::Result<Option<Output>> {
         let path = path.as_deref().filter(|_| !args.run.check);
         path.map(|path| Ok(Output::open(path)?.apart_from(inputs())?)).transpose()
     };
-    let outputs = Outputs { out: open(&args.out)?, model: open(&args.out_model)?, report: open(&args.report)? };
+    let outputs = Outputs {
+        out: open(&args.out)?,
+        model: open(&args.out_model)?,
+        report: open(&args.report)?,
+        next: open(&args.next_experiment)?,
+    };
+    let to_stdout = outputs.paths().any(|path| path.as_os_str() == "-");
 
     let (model, model_sha256) = ModelArtifact::read(model_path)?;
     let estimation = read_all(args, &console, &args.logs)?;
@@ -64,12 +74,15 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     let agreement = Agreement::of(&found)?;
     let tool = Tool { name: "pam-diagnose".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
     let head = Head { tool, inputs: hashes, seed: args.run.seed };
-    let isolability = Isolability { ids: Vec::new(), visible_n: Vec::new(), cosine: Vec::new() };
-    let artifact = found.artifact(head.clone(), &agreement, isolability, None);
+    let artifact = found.artifact(head.clone(), &agreement);
 
     console.text(tables::all(&artifact));
     for warning in &artifact.warnings {
         console.warn(warning);
+    }
+    if args.isolability {
+        let matrix = tables::isolability(&artifact);
+        if to_stdout { console.text(matrix) } else { pam_cli::write_file("-", matrix)? }
     }
     let augmented = outputs.model.is_some().then(|| found.model_artifact(head, &agreement));
     outputs.write(&console, &found, &artifact, augmented.as_ref())?;
@@ -84,9 +97,14 @@ struct Outputs {
     out: Option<Output>,
     model: Option<Output>,
     report: Option<Output>,
+    next: Option<Output>,
 }
 
 impl Outputs {
+    fn paths(&self) -> impl Iterator<Item = &Path> {
+        [&self.out, &self.model, &self.report, &self.next].into_iter().flatten().map(Output::path)
+    }
+
     /// Publishes everything together.
     fn write(
         self,
@@ -105,6 +123,18 @@ impl Outputs {
         if let Some(output) = self.report {
             let page = page::page(artifact, &found.model, traces(found, REPORT_SAMPLES)?);
             outputs.push((output, pam_report::diagnosis_page(&page)?.into_bytes()));
+        }
+        match (self.next, &found.next_experiment) {
+            (Some(output), Some((_, setpoints))) => {
+                let mut csv = Vec::new();
+                setpoints.write_csv(&mut csv)?;
+                outputs.push((output, csv));
+            }
+            (Some(output), None) => console.note(format!(
+                "{} was not written: nothing is in question that a recording would decide",
+                output.path().display()
+            )),
+            (None, _) => {}
         }
         let mut written: Vec<String> = outputs.iter().map(|(output, _)| output.path().display().to_string()).collect();
         commit_all(outputs)?;

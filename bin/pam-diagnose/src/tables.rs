@@ -119,7 +119,7 @@ fn candidates(artifact: &DiagnosisArtifact) -> Option<String> {
 /// What to record next.
 fn next(artifact: &DiagnosisArtifact) -> Option<String> {
     if let Some(next) = &artifact.next_experiment {
-        return Some(format!("Record next: {}: {}\n", next.protocol, next.instruction));
+        return Some(format!("What to record next: {}\n", next.instruction));
     }
     let lines: Vec<String> = artifact
         .effects
@@ -127,4 +127,45 @@ fn next(artifact: &DiagnosisArtifact) -> Option<String> {
         .map(|effect| format!("Test that decides on {}: {}\n", effect.id, effect.separating_test))
         .collect();
     (!lines.is_empty()).then(|| lines.concat())
+}
+
+/// Cosines of which less is said.
+const FAINT: f64 = 0.3;
+
+/// Which effects the recordings could tell apart: a matrix of those that they would show.
+pub(crate) fn isolability(artifact: &DiagnosisArtifact) -> String {
+    let found = &artifact.isolability;
+    // What stays hidden is compared with nothing.
+    let compared =
+        |index: &usize| found.cosine[*index].iter().enumerate().any(|(at, &cosine)| at != *index && cosine > 0.0);
+    let (shown, hidden): (Vec<usize>, Vec<usize>) = (0..found.ids.len()).partition(compared);
+    let mut header = vec!["".to_owned(), "effect".to_owned(), "leaves N".to_owned()];
+    header.extend((1..=shown.len()).map(|number| number.to_string()));
+    let mut table = Table::new(header);
+    for (number, &row) in shown.iter().enumerate() {
+        let mut cells = vec![(number + 1).to_string(), found.ids[row].clone(), significant(found.visible_n[row], 2)];
+        cells.extend(shown.iter().map(|&column| {
+            let cosine = found.cosine[row][column].abs();
+            if row == column {
+                "-".to_owned()
+            } else if cosine < FAINT {
+                String::new()
+            } else {
+                format!("{:.0}", 100.0 * cosine)
+            }
+        }));
+        table.row(cells);
+    }
+    let hidden: Vec<&str> = hidden.into_iter().map(|index| found.ids[index].as_str()).collect();
+    let hidden = if hidden.is_empty() {
+        String::new()
+    } else {
+        format!("Hidden in the noise at a typical size: {}\n", hidden.join(", "))
+    };
+    format!(
+        "What these recordings could tell apart: residual of each effect at a typical size after a refit of the base, and \
+         100 times the cosine between the residuals of two (100 looks the same, blank is below {:.0})\n{}{hidden}",
+        100.0 * FAINT,
+        table.to_terminal()
+    )
 }

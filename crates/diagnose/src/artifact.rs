@@ -1,8 +1,6 @@
 //! A diagnosis as artifacts: what was found, and the model with it.
 
-use pam_core::artifact::diagnosis::{
-    BeforeAfter, DiagnosisArtifact, DiagnosisFit, Isolability, NextExperiment, SCHEMA, Verdict,
-};
+use pam_core::artifact::diagnosis::{BeforeAfter, DiagnosisArtifact, DiagnosisFit, SCHEMA, Verdict};
 use pam_core::artifact::model::{
     self, CompositeEntry, Correlation, Domain, FitReport, FitStatistics, ModelArtifact, ParameterEntry,
     ParameterStatus, RecordingFit, SearchReport,
@@ -107,13 +105,7 @@ impl Diagnosis {
     ///
     /// # Panics
     /// Where `agreement` is of another diagnosis.
-    pub fn artifact(
-        &self,
-        head: Head,
-        agreement: &Agreement,
-        isolability: Isolability,
-        next_experiment: Option<NextExperiment>,
-    ) -> DiagnosisArtifact {
+    pub fn artifact(&self, head: Head, agreement: &Agreement) -> DiagnosisArtifact {
         let noise_floor_n = self.sizes.floor_n;
         let pair = |before: &FitStatistics, after: &FitStatistics| BeforeAfter {
             rmse_before_n: before.rmse_n,
@@ -139,8 +131,8 @@ impl Diagnosis {
             unexplained_where: self.unexplained.clone(),
             implausible: self.implausible.clone(),
             candidates: self.candidates.clone(),
-            isolability,
-            next_experiment,
+            isolability: self.isolability.clone(),
+            next_experiment: self.next_experiment.as_ref().map(|(next, _)| next.clone()),
             warnings: self.warnings(agreement),
         }
     }

@@ -263,6 +263,8 @@ fn candidates(found: &Found) -> Vec<Candidate> {
                 "cannot be told from what was named".to_owned()
             } else if explains < 0.02 {
                 "explains nothing".to_owned()
+            } else if taken.is_empty() {
+                "gains no more than chance or what does not matter".to_owned()
             } else {
                 "explains less than what was named, and nothing beside it".to_owned()
             };

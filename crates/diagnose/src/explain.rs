@@ -63,7 +63,7 @@ pub fn nominal() -> (Muscle, f64) {
 pub fn signature(effect: &'static dyn Effect) -> Signature {
     let (muscle, modulus_pa) = nominal();
     let base = nominal_model(&muscle, modulus_pa);
-    let path = Path::of(effect.page().protocol);
+    let path = Path::of(effect.page().protocol, effect.page().coordinate);
     let instants = path.instants(&muscle, &base);
     let without_n: Vec<f64> = instants.iter().map(|instant| instant.force_n).collect();
     let seen = seen(&instants);
@@ -181,10 +181,18 @@ struct Path {
 }
 
 impl Path {
-    /// A short form of the protocol of that name.
-    fn of(protocol: &str) -> Self {
+    /// A short form of the protocol of that name, which moves along the coordinate.
+    fn of(protocol: &str, coordinate: Coordinate) -> Self {
         let path = |words, driven, duration_s, at| Self { words, driven, duration_s, at };
         match protocol {
+            _ if coordinate == Coordinate::Speed => {
+                path("length sines of rising frequency at 300 kPa", Driven::Contraction, 30.0, |t| {
+                    (300e3, 0.1 - 0.06 * sweep(t).cos())
+                })
+            }
+            "pressure-chirp" => path("pressure steps at one length", Driven::Time, 6.0, |t| {
+                (100e3 + 250e3 * smooth_step((t - 1.0) / 0.1) - 250e3 * smooth_step((t - 3.5) / 0.1), 0.08)
+            }),
             "isobaric-triangles" => path("slow length triangles at 150 and 350 kPa", Driven::Contraction, 80.0, |t| {
                 (if t < 40.0 { 150e3 } else { 350e3 }, 0.26 * triangle(t / 40.0))
             }),
@@ -196,14 +204,6 @@ impl Path {
             "isometric-ramps" => {
                 path("slow pressure ramps at a contraction of 5 and 15 %", Driven::Pressure, 60.0, |t| {
                     (450e3 * triangle(t / 30.0), if t < 30.0 { 0.05 } else { 0.15 })
-                })
-            }
-            "pressure-chirp" => path("pressure sines of rising frequency at one length", Driven::Pressure, 30.0, |t| {
-                (250e3 - 180e3 * sweep(t).cos(), 0.1)
-            }),
-            "rate-ladder" | "length-chirp" => {
-                path("length sines of rising frequency at 300 kPa", Driven::Contraction, 30.0, |t| {
-                    (300e3, 0.1 - 0.06 * sweep(t).cos())
                 })
             }
             "isotonic" => path("slow length triangles at 100, 250 and 400 kPa", Driven::Contraction, 90.0, |t| {
@@ -220,7 +220,7 @@ impl Path {
                 (300e3, stroke * triangle(t / 10.0))
             }),
             "endurance" => path("cycles of length at 400 kPa for ten minutes", Driven::Time, 600.0, |t| {
-                (400e3, 0.1 - 0.08 * (TAU * 0.5 * t).cos())
+                (400e3, 0.1 - 0.08 * (TAU * 0.05 * t).cos())
             }),
             // The null protocol, and whatever is new.
             _ => path("slow length triangles at 100 kPa for ten minutes", Driven::Time, 600.0, |t| {

@@ -75,5 +75,14 @@ pub fn place(region: &Region) -> String {
         Coordinate::Cycle => (1.0, "", "in cycles, from"),
         Coordinate::Force => (1.0, "N", "in force, from"),
     };
-    format!("{words} {:.3} to {:.3} {unit}", region.from * scale, region.to * scale).trim_end().to_owned()
+    let (from, to) = (region.from * scale, region.to * scale);
+    format!("{words} {} to {} {unit}", rounded(from, to - from), rounded(to, to - from)).trim_end().to_owned()
+}
+
+/// An end of an interval that is `span` wide: two digits of the span, and of a small end that is not nothing beside it.
+fn rounded(value: f64, span: f64) -> String {
+    let smaller = if value.abs() > 1e-2 * span { value.abs().min(span) } else { span };
+    let decimals = (1.0 - smaller.max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

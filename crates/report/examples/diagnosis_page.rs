@@ -143,6 +143,8 @@ fn effect() -> PageEffect {
         equation: "F = F_static(p, L) - F_c(p, L) z,  z = Σ w_i z_i,  z_i ← clamp(z_i + Δx / r_i, -1, 1),  \
                    r_i = δ (0.15 … 4.5)"
             .to_owned(),
+        symbols: Vec::new(),
+        validity: String::new(),
         source: "Al-Bender, Lampaert and Swevers (2005), IEEE Trans. Automatic Control 50(11)".to_owned(),
         parameters: vec![
             PageParameter {
@@ -169,6 +171,7 @@ fn effect() -> PageEffect {
             because: "a soft fixture also makes the slope behind a reversal finite".to_owned(),
             test: "minor loops at several pressures: the slope of a fixture is the same at all of them".to_owned(),
         }],
+        look_alikes: Vec::new(),
         separating_test: "nested minor loops of 10, 5, 2 and 1 mm at constant pressure, at two speeds".to_owned(),
     }
 }

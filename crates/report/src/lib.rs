@@ -26,7 +26,7 @@ pub use confusion_figure::{ConfusionFigure, confusion_figure};
 pub use diagnosis_page::{
     DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEvidence,
     PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording, PageRegion,
-    PageUnknown, PageVerdict, diagnosis_page,
+    PageSymbol, PageUnknown, PageVerdict, diagnosis_page,
 };
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;

@@ -3,7 +3,7 @@
 use pam_report::{
     ConfusionFigure, DiagnosisPage, FigureError, PageAlternative, PageAppendix, PageCandidate, PageCoordinate,
     PageEffect, PageEvidence, PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter,
-    PageRecording, PageRegion, PageUnknown, PageVerdict, SignatureFigure, SignaturePanel, SignatureSeries,
+    PageRecording, PageRegion, PageSymbol, PageUnknown, PageVerdict, SignatureFigure, SignaturePanel, SignatureSeries,
     confusion_figure, diagnosis_page, signature_figure,
 };
 
@@ -72,6 +72,8 @@ fn full() -> DiagnosisPage {
             summary: text(),
             signature: text(),
             equation: format!("F_a = {SHARP}^2"),
+            symbols: vec![PageSymbol { symbol: text(), unit: text(), meaning: text() }],
+            validity: text(),
             source: text(),
             parameters: vec![PageParameter {
                 name: text(),
@@ -83,6 +85,7 @@ fn full() -> DiagnosisPage {
             }],
             evidence,
             alternatives: vec![PageAlternative { id: text(), name: text(), because: text(), test: text() }],
+            look_alikes: vec![PageAlternative { id: text(), name: text(), because: text(), test: text() }],
             separating_test: text(),
         }],
         candidates: vec![PageCandidate { id: text(), name: text(), evidence, explains: 0.4, outcome: text() }],

@@ -89,6 +89,10 @@ pub struct PageEffect {
     pub signature: String,
     /// The equation that was fitted.
     pub equation: String,
+    /// Its symbols.
+    pub symbols: Vec<PageSymbol>,
+    /// When it holds; may be empty.
+    pub validity: String,
     /// Where the equation comes from.
     pub source: String,
     /// Its parameters.
@@ -97,8 +101,21 @@ pub struct PageEffect {
     pub evidence: PageEvidence,
     /// Effects that these recordings cannot tell from it.
     pub alternatives: Vec<PageAlternative>,
+    /// Effects that other recordings may not tell from it.
+    pub look_alikes: Vec<PageAlternative>,
     /// What would tell them apart, or confirm the effect.
     pub separating_test: String,
+}
+
+/// A symbol of an equation.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PageSymbol {
+    /// As in the equation.
+    pub symbol: String,
+    /// Unit; `1` where it has none.
+    pub unit: String,
+    /// Meaning, and the usual range of a parameter.
+    pub meaning: String,
 }
 
 /// A parameter of an effect.

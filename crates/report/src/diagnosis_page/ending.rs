@@ -97,11 +97,8 @@ pub(super) fn next(experiment: Option<&PageExperiment>) -> String {
     let Some(experiment) = experiment else {
         return paragraph("Nothing: no protocol of the bench would tell more than these recordings do.");
     };
-    let mut html = format!(
-        "<p>Record <strong>{}</strong>: {}</p>\n",
-        escaped(&experiment.protocol),
-        escaped(&experiment.instruction)
-    );
+    let (protocol, instruction) = (escaped(&experiment.protocol), escaped(&experiment.instruction));
+    let mut html = format!("<p><strong>{protocol}</strong></p>\n<p>{instruction}</p>\n");
     if !experiment.separates.is_empty() {
         let apart = experiment.separation_n;
         let apart = if apart.is_finite() {

@@ -33,7 +33,7 @@ mod time_lines;
 
 pub use content::{
     DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageEffect, PageEvidence, PageExperiment, PageFit,
-    PageImplausible, PageInput, PageIsolability, PageParameter, PageRegion, PageUnknown, PageVerdict,
+    PageImplausible, PageInput, PageIsolability, PageParameter, PageRegion, PageSymbol, PageUnknown, PageVerdict,
 };
 pub use coordinate::PageCoordinate;
 pub use recording::PageRecording;

@@ -30,6 +30,16 @@ fn effect(effect: &PageEffect) -> String {
     let mut html = format!("<article class=\"effect\">\n<h3>{name}<code class=\"id\">{id}</code></h3>\n");
     html.push_str(&paragraph(&effect.summary));
     html.push_str(&equation(&effect.equation));
+    if !effect.symbols.is_empty() {
+        let mut symbols = Table::new(["symbol", "unit", "meaning and usual range"]);
+        for symbol in &effect.symbols {
+            symbols.row([symbol.symbol.clone(), symbol.unit.clone(), symbol.meaning.clone()]);
+        }
+        html.push_str(&table(&symbols));
+    }
+    if !effect.validity.is_empty() {
+        html.push_str(&remark(&format!("Holds: {}", effect.validity)));
+    }
     if !effect.source.is_empty() {
         html.push_str(&remark(&format!("Source: {}", effect.source)));
     }
@@ -47,6 +57,10 @@ fn effect(effect: &PageEffect) -> String {
         html.push_str(&paragraph("These recordings tell it from every other effect of the catalogue."));
     } else {
         html.extend(effect.alternatives.iter().map(alternative));
+    }
+    if !effect.look_alikes.is_empty() {
+        html.push_str(&paragraph("Other recordings may not tell it from:"));
+        html.extend(effect.look_alikes.iter().map(alternative));
     }
     if !effect.separating_test.is_empty() {
         let test = escaped(&effect.separating_test);

@@ -1,0 +1,351 @@
+//! The program as a person meets it: diagnoses of concealed effects, messages, exit codes, files that are there or not.
+
+#![expect(clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+
+use pam_core::artifact::diagnosis::Verdict;
+use pam_core::artifact::model::Loss;
+use pam_core::artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
+use pam_core::force::Form;
+use pam_core::muscle::MuscleFile;
+use pam_core::recording::{ReadOptions, Recording, read_recording};
+use pam_identification::fit::FitOptions;
+use pam_identification::identify::{Request, check};
+use pam_identification::search_space::LATEX_RATIO;
+use pam_virtual_bench::{Bench, Concealed, Options, Parameters, TrueMuscle, command};
+
+const FITTED: [&str; 3] = ["minor-loops", "isobaric-triangles", "isometric-ramps"];
+const LOGS: &str = "minor-loops.csv isobaric-triangles.csv isometric-ramps.csv";
+const HELD: &str = "--holdout multisine.csv";
+
+fn muscle_file() -> MuscleFile {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    MuscleFile::read(&root.join("configs/muscle-nominal.toml")).unwrap()
+}
+
+/// A folder with recordings of the nominal muscle, three to fit and one to hold out, and the model that a fit finds.
+struct Desk {
+    folder: tempfile::TempDir,
+}
+
+impl Desk {
+    fn with(concealed: &[Concealed]) -> Self {
+        let desk = Self { folder: tempfile::tempdir().unwrap() };
+        let MuscleFile { muscle, strand_modulus_pa, .. } = muscle_file();
+        let truth = TrueMuscle::new(muscle, strand_modulus_pa, Parameters::nominal());
+        let options = Options { duration_scale: 0.2, ..Options::default() };
+        for (seed, protocol) in FITTED.into_iter().chain(["multisine"]).enumerate() {
+            let command = command(protocol, &truth, &options).unwrap();
+            let bench = Bench::new(truth.clone(), command).with_effects(concealed, 1).unwrap();
+            let mut csv = Vec::new();
+            bench.record(seed as u64 + 1).write_csv(&mut csv).unwrap();
+            desk.file(&format!("{protocol}.csv"), csv);
+        }
+        let model = desk.identified();
+        desk.file("model.json", serde_json::to_vec(&model).unwrap());
+        desk
+    }
+
+    /// Without anything concealed.
+    fn plain() -> &'static Self {
+        static DESK: OnceLock<Desk> = OnceLock::new();
+        DESK.get_or_init(|| Self::with(&[]))
+    }
+
+    /// With pre-sliding.
+    fn presliding() -> &'static Self {
+        static DESK: OnceLock<Desk> = OnceLock::new();
+        DESK.get_or_init(|| Self::with(&[Concealed::new("presliding-hysteresis", 1.0)]))
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn file(&self, name: &str, content: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), content).unwrap();
+    }
+
+    fn recording(&self, name: &str) -> Recording {
+        read_recording(&self.path(name), &ReadOptions::default()).unwrap()
+    }
+
+    /// What pam-identify finds.
+    fn identified(&self) -> ModelArtifact {
+        let request = Request {
+            estimation: FITTED.iter().map(|name| self.recording(&format!("{name}.csv"))).collect(),
+            validation: Vec::new(),
+            muscle: muscle_file(),
+            form: Form::Corrected,
+            options: FitOptions { n_particles: 30, n_iterations: 60, n_starts: 1, seed: 1, polish: true },
+            loss: Loss::Square,
+            free: Vec::new(),
+            fix: Vec::new(),
+            bladder_ratio: LATEX_RATIO,
+            length_play_m: None,
+            pressure_play_pa: None,
+            accept_implausible: true,
+            unbounded: false,
+        };
+        let checked = check(request).unwrap();
+        let config = checked.config();
+        let tool = Tool { name: "pam-identify".to_owned(), version: "0.1.0".to_owned() };
+        let input = Input { path: "muscle.toml".to_owned(), sha256: "0".repeat(64), role: InputRole::Muscle };
+        checked.identify().unwrap().artifact(tool, vec![input], config, 1)
+    }
+
+    fn run(&self, arguments: &str) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_pam-diagnose"))
+            .args(arguments.split(' ').filter(|word| !word.is_empty()))
+            .current_dir(self.folder.path())
+            .stdin(Stdio::null())
+            .output()
+            .unwrap()
+    }
+
+    /// Diagnosis and model of a run that must end with `code`.
+    fn diagnosed(&self, arguments: &str, code: i32) -> (DiagnosisArtifact, ModelArtifact) {
+        let output = self.run(arguments);
+        assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&output.stderr));
+        let (diagnosis, _) = DiagnosisArtifact::read(&self.path("diagnosis.json")).unwrap();
+        let (model, _) = ModelArtifact::read(&self.path("augmented.json")).unwrap();
+        (diagnosis, model)
+    }
+
+    /// The one line of an error; nothing may have been written.
+    fn refusal(&self, arguments: &str) -> String {
+        let output = self.run(arguments);
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {stderr}");
+        assert!(output.stdout.is_empty());
+        let written: Vec<String> = std::fs::read_dir(self.folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name.starts_with('.') || name.starts_with("refused"))
+            .collect();
+        assert!(written.is_empty(), "{arguments}: written {written:?}");
+        let errors: Vec<&str> = stderr.lines().filter(|line| line.starts_with("error: ")).collect();
+        assert_eq!(errors.len(), 1, "{arguments}: {stderr}");
+        errors[0].to_owned()
+    }
+}
+
+/// What the programs behind the diagnosis predict of a held-out recording, root mean square of the residual in N.
+fn predicted_rmse_n(desk: &Desk, model: &ModelArtifact) -> f64 {
+    let prepared = pam_identification::predict::prepare(desk.recording("multisine.csv"), model).unwrap();
+    let augmented = model.augmented_model().without_events();
+    let (direction, rest_length_m) = (model.direction, model.geometry.rest_length_m);
+    let found =
+        pam_identification::evaluate::evaluate_augmented(&[prepared], &augmented, direction, rest_length_m).unwrap();
+    found.together.unwrap().rmse_n
+}
+
+fn finds(desk: &Desk, id: &str, folder_tag: &str) {
+    let files = format!("--out diagnosis.json --out-model augmented.json --report {folder_tag}.html");
+    let (diagnosis, model) = desk.diagnosed(&format!("{LOGS} --model model.json {HELD} {files}"), 0);
+    let named: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.id.as_str()).collect();
+    assert_eq!(named.first(), Some(&id), "{}", diagnosis.statement);
+    assert!(!diagnosis.regions.is_empty());
+    let held = diagnosis.fit.holdout.unwrap();
+    assert!(held.rmse_after_n < 0.7 * held.rmse_before_n, "{held:?}");
+    // The model that was written is the one that was judged, and its values are those of the diagnosis.
+    let predicted_n = predicted_rmse_n(desk, &model);
+    assert!((predicted_n - held.rmse_after_n).abs() < 1e-9 * predicted_n, "{predicted_n} {held:?}");
+    assert_eq!(model.fit.validation.unwrap().rmse_n, held.rmse_after_n);
+    assert_eq!(model.effects.len(), named.len());
+    assert_eq!(model.tool.name, "pam-diagnose");
+    let report = std::fs::read_to_string(desk.path(&format!("{folder_tag}.html"))).unwrap();
+    assert!(report.contains(&diagnosis.effects[0].separating_test) && report.contains("<svg"));
+    // Neither scripts nor anything from elsewhere.
+    assert!(!report.contains("<script") && !report.contains("src=\"http"));
+}
+
+#[test]
+fn presliding_that_was_concealed_is_named_and_pays_on_what_was_held_out() {
+    finds(Desk::presliding(), "presliding-hysteresis", "presliding");
+}
+
+#[test]
+fn a_threshold_pressure_that_was_concealed_is_named_and_pays_on_what_was_held_out() {
+    finds(&Desk::with(&[Concealed::new("threshold-pressure", 1.0)]), "threshold-pressure", "threshold");
+}
+
+#[test]
+fn where_nothing_is_missing_nothing_is_named() {
+    let desk = Desk::plain();
+    let files = "--out diagnosis.json --out-model augmented.json --report plain.html --next-experiment next.csv";
+    let (diagnosis, model) = desk.diagnosed(&format!("{LOGS} --model model.json {HELD} {files}"), 0);
+    assert_eq!(diagnosis.verdict, Verdict::Consistent);
+    assert!(diagnosis.effects.is_empty() && diagnosis.regions.is_empty() && model.effects.is_empty());
+    assert!(!desk.path("next.csv").exists(), "nothing is in question");
+}
+
+#[test]
+fn a_diagnosed_model_may_be_diagnosed_again() {
+    let desk = Desk::with(&[Concealed::new("presliding-hysteresis", 1.0)]);
+    let files = "--out diagnosis.json --out-model augmented.json --quiet";
+    let (first, model) = desk.diagnosed(&format!("{LOGS} --model model.json {files}"), 0);
+    desk.file("once.json", serde_json::to_vec(&model).unwrap());
+    let (second, again) = desk.diagnosed(&format!("{LOGS} --model once.json {files}"), 0);
+    assert_eq!(first.effects[0].id, second.effects[0].id);
+    assert!(second.warnings.iter().any(|warning| warning.contains("weighed anew")), "{:?}", second.warnings);
+    let values = |model: &ModelArtifact| -> Vec<f64> { model.parameters.iter().map(|entry| entry.value).collect() };
+    for (once, twice) in values(&model).into_iter().zip(values(&again)) {
+        assert!((once - twice).abs() <= 1e-3 * once.abs(), "{once} {twice}");
+    }
+}
+
+#[test]
+fn the_same_inputs_give_the_same_bytes_on_any_number_of_threads() {
+    let desk = Desk::presliding();
+    let of = |threads: usize| {
+        let names = ["d.json", "m.json", "r.html", "n.csv"].map(|name| format!("{threads}-{name}"));
+        let [diagnosis, model, report, next] = &names;
+        let output = desk.run(&format!(
+            "{LOGS} --model model.json {HELD} --threads {threads} --quiet --out {diagnosis} --out-model {model} --report \
+             {report} --next-experiment {next}"
+        ));
+        assert_eq!(output.status.code(), Some(0));
+        assert!(output.stdout.is_empty() && output.stderr.is_empty());
+        names.map(|name| std::fs::read(desk.path(&name)).unwrap())
+    };
+    assert!(of(1) == of(2));
+}
+
+#[test]
+fn the_artifact_goes_to_standard_output_and_obeys_its_schema() {
+    let desk = Desk::presliding();
+    let output = desk.run(&format!("{LOGS} --model model.json {HELD} --out - --quiet"));
+    let artifact: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let schema: serde_json::Value = serde_json::from_slice(&desk.run("--schema").stdout).unwrap();
+    jsonschema::validate(&schema, &artifact).unwrap();
+    assert_eq!(artifact["schema"], "pam-diagnosis/1");
+    assert_eq!(artifact["inputs"].as_array().unwrap().len(), 5);
+    assert_eq!(
+        artifact["isolability"]["ids"].as_array().unwrap().len(),
+        artifact["candidates"].as_array().unwrap().len()
+    );
+}
+
+#[test]
+fn an_effect_that_is_excluded_is_not_named() {
+    let desk = Desk::presliding();
+    let arguments = format!("{LOGS} --model model.json --exclude presliding-hysteresis --out - --quiet");
+    let artifact: DiagnosisArtifact = serde_json::from_slice(&desk.run(&arguments).stdout).unwrap();
+    assert!(artifact.effects.iter().all(|effect| effect.id != "presliding-hysteresis"));
+    assert!(artifact.candidates.iter().all(|candidate| candidate.id != "presliding-hysteresis"));
+    assert_eq!(artifact.config.excluded, ["presliding-hysteresis"]);
+}
+
+#[test]
+fn a_limit_of_what_matters_makes_a_mismatch_consistent() {
+    let desk = Desk::presliding();
+    let arguments = format!("{LOGS} --model model.json --matters-above-n 500 --out - --quiet");
+    let artifact: DiagnosisArtifact = serde_json::from_slice(&desk.run(&arguments).stdout).unwrap();
+    assert_eq!(artifact.verdict, Verdict::Consistent);
+}
+
+#[test]
+fn what_could_be_told_apart_is_a_matrix_on_standard_output() {
+    let desk = Desk::plain();
+    let output = desk.run(&format!("{LOGS} --model model.json --isolability --quiet"));
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.starts_with("What these recordings could tell apart") && text.contains("threshold-pressure"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_check_writes_nothing() {
+    let desk = Desk::plain();
+    let output = desk.run(&format!("{LOGS} --model model.json {HELD} --check --out refused.json"));
+    assert_eq!(output.status.code(), Some(0));
+    assert!(!desk.path("refused.json").exists());
+    assert!(String::from_utf8(output.stderr).unwrap().ends_with("inputs are fine; nothing was diagnosed (--check)\n"));
+}
+
+#[test]
+fn every_effect_is_explained_and_drawn() {
+    let desk = Desk::plain();
+    let list = String::from_utf8(desk.run("--explain all").stdout).unwrap();
+    let ids: Vec<&str> = list.lines().skip(2).filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(ids.len(), pam_core::effects::CATALOGUE.len());
+    for id in ids {
+        let output = desk.run(&format!("--explain {id} --figure {id}.svg --quiet"));
+        assert_eq!(output.status.code(), Some(0), "{id}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.contains(&format!("({id})")), "{text}");
+        assert!(["Equation", "Signature", "Confused with", "Test"].iter().all(|title| text.contains(title)), "{text}");
+        assert!(text.lines().filter(|line| !line.contains('─')).all(|line| line.chars().count() < 160), "{text}");
+        assert!(std::fs::read_to_string(desk.path(&format!("{id}.svg"))).unwrap().starts_with("<svg"));
+    }
+}
+
+/// Rows of a recording, each changed: time s, pressure kPa, length mm, force N.
+fn reworked(desk: &Desk, name: &str, change: impl Fn([f64; 4]) -> [f64; 4]) -> String {
+    let mut text = "time_s,pressure_kPa,length_mm,force_N\n".to_owned();
+    for line in std::fs::read_to_string(desk.path(name)).unwrap().lines().skip(1) {
+        let mut fields = line.split(',').map(|field| field.parse::<f64>().unwrap());
+        let [t, p, l, f] = change([(); 4].map(|()| fields.next().unwrap()));
+        text.push_str(&format!("{t},{p},{l},{f}\n"));
+    }
+    text
+}
+
+#[test]
+fn every_mistake_gets_one_line_with_place_and_remedy() {
+    let desk = Desk::plain();
+    let triangles = "isobaric-triangles.csv";
+    desk.file("copy.csv", std::fs::read(desk.path(triangles)).unwrap());
+    desk.file("rewritten.csv", reworked(desk, triangles, |row| row));
+    desk.file("still.csv", reworked(desk, triangles, |[t, p, l, _]| [t, p, l, 7.5]));
+    desk.file("held.csv", reworked(desk, triangles, |[t, _, _, f]| [t, 300.0, 250.0, f]));
+    desk.file("clipped.csv", reworked(desk, triangles, |[t, p, l, f]| [t, p, l, f.min(300.0)]));
+    desk.file("other.csv", reworked(desk, triangles, |[t, p, l, f]| [t, p, l + 60.0, f]));
+    let head: Vec<String> =
+        std::fs::read_to_string(desk.path(triangles)).unwrap().lines().take(400).map(str::to_owned).collect();
+    desk.file("short.csv", head.join("\n") + "\n");
+    desk.file("empty.csv", "");
+    desk.file("broken.json", "{\"schema\": \"pam-model/1\",");
+    desk.file("inverse.json", "{\"schema\": \"pam-inverse/1\"}");
+    desk.file("sub", "");
+    let to = "--out refused.json";
+    let cases = [
+        format!("{LOGS} --model model.json --holdout {triangles} {to}"),
+        format!("{LOGS} --model model.json --holdout copy.csv {to}"),
+        format!("{LOGS} --model model.json --holdout rewritten.csv {to}"),
+        format!("still.csv --model model.json {to}"),
+        format!("held.csv --model model.json {to}"),
+        format!("clipped.csv --model model.json {to}"),
+        format!("other.csv --model model.json {to}"),
+        format!("short.csv --model model.json {to}"),
+        format!("empty.csv --model model.json {to}"),
+        format!("missing.csv --model model.json {to}"),
+        format!("{LOGS} --model missing.json {to}"),
+        format!("{LOGS} --model broken.json {to}"),
+        format!("{LOGS} --model inverse.json {to}"),
+        format!("{LOGS} --model model.json --out sub/refused.json"),
+        format!("{LOGS} --model model.json --out refused.json --report nowhere/refused.html"),
+        format!("{LOGS} --model model.json --out refused.json --out-model refused.json"),
+        format!("{LOGS} --model model.json --out model.json"),
+        format!("{LOGS} --model model.json --out /dev/full"),
+        format!("{LOGS} --model model.json {to} --exclude stribek"),
+        format!("{LOGS} --model model.json {to} --exclude gearbox"),
+        format!("{LOGS} --model model.json {to} --max-effects 0"),
+        format!("{LOGS} --model model.json {to} --matters-above-n -1"),
+        format!("{LOGS} --model model.json"),
+        format!("{LOGS} {to}"),
+        format!("--model model.json {to}"),
+        format!("{LOGS} --model model.json {to} --figure refused.svg"),
+        "--explain stribek".to_owned(),
+        "--explain all --figure refused.svg".to_owned(),
+        format!("--explain stribeck {to}"),
+    ];
+    let said: Vec<String> = cases.iter().map(|arguments| desk.refusal(arguments)).collect();
+    insta::assert_snapshot!(said.join("\n"), @"");
+}
