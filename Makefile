@@ -14,12 +14,16 @@ all: cargo-is-there
 		$(DATA)/length-steps.csv --holdout $(DATA)/multisine.csv --holdout $(DATA)/lift.csv \
 		--muscle configs/muscle-nominal.toml --out $(OUT)/model.json --figure $(OUT)/fit.svg --compare-forms
 	$(BIN)/pam-predict $(DATA)/multisine.csv --model $(OUT)/model.json --out $(OUT)/predicted.csv --max-rmse-n 2
+	$(BIN)/pam-diagnose $(DATA)/isobaric-triangles.csv $(DATA)/isometric-ramps.csv $(DATA)/minor-loops.csv \
+		$(DATA)/length-steps.csv --holdout $(DATA)/multisine.csv --holdout $(DATA)/lift.csv --model $(OUT)/model.json \
+		--out $(OUT)/diagnosis.json --report $(OUT)/report.html
 	$(BIN)/pam-train-inverse --model $(OUT)/model.json --out $(OUT)/inverse.json --figure $(OUT)/inverse.svg
 	$(BIN)/exo-track --config configs/lift.toml --model $(OUT)/model.json --inverse $(OUT)/inverse.json \
 		--out $(OUT)/track.csv --metrics $(OUT)/metrics.json --figure $(OUT)/lift.svg
 	@echo
+	@echo "Report:    $(OUT)/report.html"
 	@echo "Figures:   $(OUT)/fit.svg, $(OUT)/inverse.svg, $(OUT)/lift.svg"
-	@echo "Artifacts: $(OUT)/model.json, $(OUT)/predicted.csv, $(OUT)/inverse.json, $(OUT)/track.csv, $(OUT)/metrics.json"
+	@echo "Artifacts: $(OUT)/model.json, $(OUT)/predicted.csv, $(OUT)/diagnosis.json, $(OUT)/inverse.json, $(OUT)/track.csv, $(OUT)/metrics.json"
 
 test: cargo-is-there
 	@$(CARGO) test --locked --workspace

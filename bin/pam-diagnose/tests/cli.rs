@@ -347,5 +347,35 @@ fn every_mistake_gets_one_line_with_place_and_remedy() {
         format!("--explain stribeck {to}"),
     ];
     let said: Vec<String> = cases.iter().map(|arguments| desk.refusal(arguments)).collect();
-    insta::assert_snapshot!(said.join("\n"), @"");
+    insta::assert_snapshot!(said.join("\n"), @r#"
+    error: isobaric-triangles.csv: is fitted and held out as well; hold out a recording that the diagnosis does not see
+    error: copy.csv: has the same samples as isobaric-triangles.csv, which is fitted; a hold-out must be a recording that nothing was fitted to
+    error: rewritten.csv: has the same samples as isobaric-triangles.csv, which is fitted; a hold-out must be a recording that nothing was fitted to
+    error: still.csv: force never varies (it is 7.5 N in every row); check the load cell and the column that holds it, or for a dead weight leave the column out and give --fixed force_N=7.5
+    error: held.csv: pressure stays at 300 kPa throughout; check its wiring, or leave the recording out
+    error: clipped.csv: force stands at 300.0 N, the end of its range, in 51 % of the samples; the sensor is saturated: leave the recording out, or take a sensor with more range
+    error: other.csv: length runs from 270.8 to 328.5 mm, which a muscle of rest length 267.0 mm cannot have (it would be stretched by more than a tenth, or its strands straight); check that the recording and the model belong together, or go on with --accept-implausible
+    error: short.csv: 2.0 s of motion in all is too short to judge by; record at least 3 s more (blocks of some seconds are held out in turn)
+    error: empty.csv: the file holds no rows; record again, or check that the logger closed the file
+    error: missing.csv: no such file; check the path
+    error: cannot read missing.json: No such file or directory (os error 2)
+    error: broken.json:1:25: EOF while parsing a value; expected a pam-model/1 artifact
+    error: inverse.json: schema is "pam-inverse/1", expected "pam-model/1"; write it with pam-identify
+    error: cannot write sub/refused.json: sub is not a folder; name another path
+    error: cannot write nowhere/refused.html: folder nowhere does not exist; create it with `mkdir -p nowhere`
+    error: two outputs go to refused.json; name different ones
+    error: cannot write model.json: it is also an input, which the run would destroy; name another
+    error: cannot write /dev/full: no space left on the device; free some or name a path elsewhere
+    error: invalid value 'stribek' for '--exclude <ID>': no effect is called "stribek"; did you mean stribeck?; see --help
+    error: invalid value 'gearbox' for '--exclude <ID>': no effect is called "gearbox"; pam-diagnose --explain all lists them; see --help
+    error: invalid value '0' for '--max-effects <N>': 0 is not in 1..=10; see --help
+    error: --matters-above-n -1 is no size of a force; give newtons from 0 up
+    error: the following required arguments were not provided: --out <DIAGNOSIS.json>; see --help
+    error: the following required arguments were not provided: --model <MODEL.json>; see --help
+    error: the following required arguments were not provided: <LOG>...; see --help
+    error: --figure draws an effect; name it with --explain (figures of a diagnosis are in --report)
+    error: --explain: no effect is called "stribek"; did you mean stribeck?
+    error: --figure draws one effect; name it instead of all
+    error: the argument '--explain <ID>' cannot be used with '--out <DIAGNOSIS.json>'; see --help
+    "#);
 }

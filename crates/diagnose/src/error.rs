@@ -32,7 +32,8 @@ pub enum DiagnoseError {
         other: String,
     },
     /// Something about the instruments is wrong before any physics is.
-    #[error("{0}")]
+    // A diagnosis knows the muscle from its model, a fit from the muscle file.
+    #[error("{}", .0.to_string().replace("muscle file", "model"))]
     Fault(pam_identification::faults::Fault),
     /// A channel that should vary does not.
     #[error("{path}: {channel} stays at {value} {unit} throughout; check its wiring, or leave the recording out")]
