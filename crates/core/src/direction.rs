@@ -185,12 +185,12 @@ impl Slow<'_> {
         // Five deviations of the raw channel are a threshold; a difference of two averages has this deviation.
         let noise = thresholds.length_m / 5.0 * (2.0 / (2 * self.half + 1) as f64).sqrt();
         let mut stills = resting.iter().peekable();
-        for row in self.long..n - self.long {
+        for (row, mark) in marks.iter_mut().enumerate().take(n - self.long).skip(self.long) {
             while stills.next_if(|still| still.end <= row).is_some() {}
-            if marks[row].abs() != 1 || stills.peek().is_some_and(|still| still.contains(&row)) {
+            if mark.abs() != 1 || stills.peek().is_some_and(|still| still.contains(&row)) {
                 continue;
             }
-            let sign = f64::from(marks[row]);
+            let sign = f64::from(*mark);
             let moved = |reach: usize| sign * (self.contraction[row + reach] - self.contraction[row - reach]);
             let (near, far) = (moved(self.half), moved(self.long));
             let doubtful = if far > 3.0 * noise {
@@ -199,7 +199,7 @@ impl Slow<'_> {
                 sign * (self.pressure[row + self.long] - self.pressure[row - self.long]) < -thresholds.pressure_pa
             };
             if doubtful {
-                marks[row] *= 2;
+                *mark *= 2;
             }
         }
     }

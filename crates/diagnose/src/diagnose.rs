@@ -10,6 +10,7 @@ use pam_core::effects::{AugmentedModel, Term};
 use pam_core::force::ForceModel;
 use pam_core::force::columns::ForceColumns;
 use pam_core::recording::Recording;
+use pam_identification::evaluate::evaluate;
 use pam_identification::prepare::Prepared;
 
 use crate::base;
@@ -163,7 +164,7 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
         isolability,
         next_experiment,
         sizes,
-        base: found.base.state.model.clone(),
+        base: better_base(&estimation, &model, &found.base.state.model)?,
         augmented: AugmentedModel::new(state.model.clone(), terms),
         entries,
         uncertainty,
@@ -175,6 +176,20 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
         config,
     };
     Ok(diagnosis)
+}
+
+/// The base model that leaves less on the recordings at their full rate: as it was identified, if that was on these, or as
+/// refitted on the grid. What effects buy is never measured against the worse one.
+fn better_base(
+    estimation: &[Prepared],
+    model: &ModelArtifact,
+    refitted: &ForceModel,
+) -> Result<ForceModel, DiagnoseError> {
+    let identified = model.force_model();
+    let rmse_n = |model: &ForceModel| -> Result<f64, DiagnoseError> {
+        Ok(evaluate(estimation, model)?.together.map_or(f64::INFINITY, |together| together.rmse_n))
+    };
+    Ok(if rmse_n(&identified)? <= rmse_n(refitted)? { identified } else { refitted.clone() })
 }
 
 /// Effects with their values, as a model evaluates them.

@@ -15,10 +15,18 @@ pub struct Sizes {
     pub left_n: f64,
     /// Beyond which a mismatch matters.
     pub matters_n: f64,
+    /// Share of the base model's residual (mean squares) that is structured.
+    pub structured_share: f64,
+    /// Whether the user said what matters.
+    pub limited: bool,
 }
 
 /// Share of the mismatch (mean squares) that may be left of an explanation.
 const MOST_LEFT: f64 = 0.3;
+/// Share of a consistent residual (mean squares) that may be structured.
+const MOST_STRUCTURED: f64 = 0.3;
+/// The same for an effect that the catalogue says it is confused with.
+const DECLARED_RIVAL: f64 = 0.6;
 /// A rival that reaches this share of the evidence cannot be told from what was named.
 const RIVAL: f64 = 0.85;
 
@@ -29,9 +37,12 @@ impl Sizes {
         let excess = |square: f64, below: f64| (square - below).max(0.0).sqrt();
         let best = found.best.held_out.mean_square();
         let left_n = found.left.as_ref().map_or(0.0, |left| excess(best, left.held_out.mean_square()));
+        let base = found.base.held_out.mean_square();
         Self {
+            structured_share: (excess(base, found.floor_square).powi(2) / base.max(f64::MIN_POSITIVE)).min(1.0),
+            limited: limits.matters_above_n.is_some(),
             floor_n,
-            mismatch_n: excess(found.base.held_out.mean_square(), found.floor_square),
+            mismatch_n: excess(base, found.floor_square),
             left_n,
             // The root mean square is then half as much again as the noise alone.
             matters_n: limits.matters_above_n.unwrap_or(floor_n * (1.5_f64.powi(2) - 1.0).sqrt()),
@@ -49,7 +60,10 @@ pub fn verdict(found: &Found, sizes: &Sizes) -> Verdict {
     let named = !found.best.state.guesses.is_empty();
     let structured = sizes.left_n > 0.5 * sizes.matters_n && sizes.share_left() > MOST_LEFT;
     if !named {
-        return if sizes.mismatch_n > sizes.matters_n { Verdict::Unexplained } else { Verdict::Consistent };
+        // The floor is an upper bound: smooth functions may not follow all that is there. So what they do follow must not be
+        // much of the residual, either.
+        let telling = !sizes.limited && sizes.structured_share > MOST_STRUCTURED;
+        return if sizes.mismatch_n > sizes.matters_n || telling { Verdict::Unexplained } else { Verdict::Consistent };
     }
     if structured {
         Verdict::Unexplained
@@ -69,7 +83,10 @@ pub fn alternatives(found: &Found, index: usize) -> Vec<&'static str> {
         .iter()
         .filter(|rival| rival.guess.id() != found.best.state.guesses[index].id())
         .filter(|rival| {
-            rival.log_ratio > RIVAL * own && without.mean_square() - rival.held_out.mean_square() > RIVAL * gained
+            let page = found.best.state.guesses[index].effect.page();
+            let declared = page.confused_with.iter().any(|confusion| confusion.id == rival.guess.id());
+            let share = if declared { DECLARED_RIVAL } else { RIVAL };
+            rival.log_ratio > share * own && without.mean_square() - rival.held_out.mean_square() > share * gained
         })
         .map(|rival| rival.guess.id())
         .collect()
