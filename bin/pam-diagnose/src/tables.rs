@@ -17,11 +17,10 @@ const REGIONS: usize = 3;
 /// Verdict and everything that it rests on.
 pub(crate) fn all(artifact: &DiagnosisArtifact) -> String {
     let mut text = format!("{}: {}\n", word(artifact.verdict), artifact.statement);
-    for part in [effects(artifact), Some(fit(artifact)), regions(artifact), candidates(artifact), next(artifact)] {
-        if let Some(part) = part {
-            text.push('\n');
-            text.push_str(&part);
-        }
+    let parts = [effects(artifact), Some(fit(artifact)), regions(artifact), candidates(artifact), next(artifact)];
+    for part in parts.into_iter().flatten() {
+        text.push('\n');
+        text.push_str(&part);
     }
     text
 }
