@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
+use pam_core::effects::Kind;
 use pam_identification::search_space::SearchSpace;
 
 use crate::joint::JointFit;
@@ -138,13 +139,12 @@ pub fn entries(
             },
         }
     };
-    let shapes = guess
-        .effect
-        .shape()
-        .iter()
-        .zip(&guess.shape)
-        .zip(shape_errors)
-        .map(|((shape, &value), &stderr)| entry(shape.name, shape.unit, value, shape.range, stderr));
+    let shapes = guess.effect.shape().iter().zip(&guess.shape).zip(shape_errors).map(|((shape, &value), &stderr)| {
+        let found = entry(shape.name, shape.unit, value, shape.range, stderr);
+        // When and where an event happened has no bound of physics.
+        let at_large = guess.effect.kind() == Kind::Event;
+        if at_large { ParameterEntry { status: ParameterStatus::Fitted, ..found } } else { found }
+    });
     let amplitudes = guess.amplitudes().iter().enumerate().map(|(offset, amplitude)| {
         let at = first + offset;
         let value = state.fit.amplitudes[at].clamp(amplitude.range.0, amplitude.range.1);
