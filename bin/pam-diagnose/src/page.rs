@@ -251,7 +251,7 @@ fn appendix(artifact: &DiagnosisArtifact) -> PageAppendix {
 }
 
 /// File name without folders and ending.
-fn short_name(path: &str) -> String {
+pub(crate) fn short_name(path: &str) -> String {
     let file = path.rsplit('/').next().unwrap_or(path);
     file.strip_suffix(".gz").unwrap_or(file).trim_end_matches(".csv").to_owned()
 }

@@ -90,7 +90,8 @@ fn regions(artifact: &DiagnosisArtifact) -> Option<String> {
     let of_all = if artifact.effects.is_empty() && !artifact.unexplained_where.is_empty() { 0 } else { REGIONS };
     let of_all = page::significant(&artifact.regions).take(of_all).map(|region| (region, ""));
     for (region, remark) in of_all.chain(left.take(REGIONS)) {
-        let recording = region.recording.as_deref().map_or(String::new(), |path| format!(", {path}"));
+        let recording =
+            region.recording.as_deref().map_or(String::new(), |path| format!(", {}", page::short_name(path)));
         table.row([
             format!("{}{recording}", words::place(region)),
             format!("{:.0} %", 100.0 * region.share_of_excess),

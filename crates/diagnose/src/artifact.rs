@@ -292,7 +292,9 @@ impl Diagnosis {
                 ));
             }
         }
-        for (name, _) in self.free.iter().zip(&self.at_bound).filter(|(_, at_bound)| **at_bound) {
+        let implausible = |name: &str| self.implausible.iter().any(|entry| entry.parameter == name);
+        let pressed = self.free.iter().zip(&self.at_bound).filter(|(name, at_bound)| **at_bound && !implausible(name));
+        for (name, _) in pressed {
             warnings
                 .push(format!("{name} is at the end of its range: eq. 11 still lacks something that it stands in for"));
         }
