@@ -66,7 +66,7 @@ pub struct Taken {
 
 /// Share of what is left of the mismatch that an effect must explain to be taken.
 const LEAST_SHARE: f64 = 0.1;
-/// Share of the whole mismatch that an effect must explain to be taken, unless it explains as much as all noise.
+/// Share of the whole mismatch that an effect must explain to be taken, unless it explains half as much as all noise.
 const LEAST_OF_ALL: f64 = 0.03;
 /// Sum of `ln(without / with)` over held-out blocks that an effect must reach: as if one block were explained and nothing
 /// lost elsewhere.
@@ -143,7 +143,7 @@ fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits:
     let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
     let whole = base.held_out.mean_square() - floor_square;
     gained > LEAST_SHARE * mismatch
-        && gained > (LEAST_OF_ALL * whole).min(full_floor)
+        && gained > (LEAST_OF_ALL * whole).min(0.5 * full_floor)
         && gained > matters
         && trial.log_ratio > LEAST_LOG_RATIO
 }
