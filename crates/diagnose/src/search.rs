@@ -117,6 +117,8 @@ pub fn search(
         }
         floor_square = floor_square.min(best.held_out.mean_square());
     }
+    let whole = base.held_out.mean_square() - floor_square;
+    let best = without_stand_ins(setting, best, &features, whole);
     let mut taken = Vec::new();
     for index in 0..best.state.guesses.len() {
         let Some((without, rivals)) = without(setting, &best, index, &seen, &promising) else { continue };
@@ -199,6 +201,44 @@ fn refine_all(setting: &Setting<'_>, state: State) -> Option<State> {
         state = setting.fit(guesses, &state.fit.x[..setting.space.free.len()], &state.model)?;
     }
     Some(state)
+}
+
+/// Share of the whole mismatch that structure over one coordinate must hold before it is asked what stands in for it.
+const STRUCTURED: f64 = 0.2;
+/// Share of its gain that an effect must keep beside such structure.
+const KEPT: f64 = 0.4;
+
+/// Lets go of effects that only stand in for something without a name: where structure over one coordinate is left, an effect
+/// that gains little beside a free function of that coordinate was the nearest name, and the wrong one.
+fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], whole: f64) -> Judged {
+    let mut best = best;
+    loop {
+        let remainder = Remainder::of(setting, &best.state);
+        let Some(nothing) = remainder.structure(&[]) else { return best };
+        let telling = features
+            .iter()
+            .filter(|feature| !feature.plane)
+            .filter_map(|feature| Some((remainder.structure(&[feature])?.held_out.mean_square(), feature)))
+            .min_by(|left, right| left.0.total_cmp(&right.0));
+        let Some((beside, feature)) = telling else { return best };
+        if nothing.held_out.mean_square() - beside < STRUCTURED * whole {
+            return best;
+        }
+        let stand_in = (0..best.state.guesses.len()).find_map(|index| {
+            let mut others = best.state.guesses.clone();
+            others.remove(index);
+            let near = &best.state.fit.x[..setting.space.free.len()];
+            let state = setting.fit(others, near, &best.state.model)?;
+            let held_out = setting.hold_out(&state)?;
+            let gained = held_out.mean_square() - best.held_out.mean_square();
+            let without = Remainder::of(setting, &state).structure(&[feature])?.held_out.mean_square();
+            (without - beside < KEPT * gained).then_some(Judged { state, held_out })
+        });
+        match stand_in {
+            Some(rest) => best = rest,
+            None => return best,
+        }
+    }
 }
 
 /// `best` without effect `index`, and what else could stand in its place.
