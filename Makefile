@@ -3,12 +3,13 @@
 CARGO ?= cargo
 OUT := out
 DATA := datasets/bench-nominal
-BIN := target/release
+# Where cargo builds to: target, unless the user's environment or configuration says otherwise.
+BIN = $(shell $(CARGO) metadata --no-deps --offline --format-version 1 | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release
 
 .PHONY: all test check bench tables datasets recordings prove prove-real clean cargo-is-there
 
 all: cargo-is-there
-	@$(CARGO) build --release --locked --workspace --bins
+	@$(CARGO) build --release --locked --bins
 	@mkdir -p $(OUT)
 	$(BIN)/pam-identify $(DATA)/isobaric-triangles.csv $(DATA)/isometric-ramps.csv $(DATA)/minor-loops.csv \
 		$(DATA)/length-steps.csv --holdout $(DATA)/multisine.csv --holdout $(DATA)/lift.csv \
@@ -38,8 +39,8 @@ bench: cargo-is-there
 
 # Every table and figure of the chain, from seeds, into out/tables.
 tables: cargo-is-there
-	@$(CARGO) build --release --locked --workspace --bins
-	@scripts/tables
+	@$(CARGO) build --release --locked --bins
+	@PAM_BIN=$(BIN) scripts/tables
 
 # Writes the shipped recordings anew, byte for byte.
 datasets: cargo-is-there
