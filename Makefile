@@ -6,7 +6,7 @@ DATA := datasets/bench-nominal
 # Where cargo builds to: target, unless the user's environment or configuration says otherwise.
 BIN = $(shell $(CARGO) metadata --no-deps --offline --format-version 1 | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release
 
-.PHONY: all test check bench tables datasets recordings prove prove-real clean cargo-is-there
+.PHONY: all test check bench tables tutorial datasets recordings prove prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -41,6 +41,11 @@ bench: cargo-is-there
 tables: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@PAM_BIN=$(BIN) scripts/tables
+
+# Every command of datasets/TUTORIAL.md, in an empty folder.
+tutorial: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/run-tutorial --bin $(BIN)
 
 # Writes the shipped recordings anew, byte for byte.
 datasets: cargo-is-there
