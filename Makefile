@@ -6,7 +6,7 @@ DATA := datasets/bench-nominal
 # Where cargo builds to: target, unless the user's environment or configuration says otherwise.
 BIN = $(shell $(CARGO) metadata --no-deps --offline --format-version 1 | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release
 
-.PHONY: all test check bench tables tutorial datasets recordings prove prove-real clean cargo-is-there
+.PHONY: all test check bench tables tutorial hard-use fuzz datasets recordings prove prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -46,6 +46,16 @@ tables: cargo-is-there
 tutorial: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/run-tutorial --bin $(BIN)
+
+# Kills, full disks, closed pipes, two writers, foreign names.
+hard-use: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/hard-use --bin $(BIN)
+
+# Broken input for every reader: SECONDS for each, one after another.
+SECONDS ?= 60
+fuzz: cargo-is-there
+	@scripts/fuzz/run $(SECONDS)
 
 # Writes the shipped recordings anew, byte for byte.
 datasets: cargo-is-there

@@ -208,6 +208,7 @@ fn leaving_the_model_s_domain_is_said() {
 fn every_bad_input_gets_one_line_with_the_remedy() {
     let bench = Bench::new();
     bench.file("diagnosis.json", "{\"schema\": \"pam-diagnosis/1\"}");
+    bench.file("earlier.json", &MODEL.replace("pam-model/1", "pam-model/0"));
     bench.file("later.json", &MODEL.replace("pam-model/1", "pam-model/9"));
     bench.file("broken.json", &MODEL[..MODEL.len() / 2]);
     bench.file("empty.json", "");
@@ -223,7 +224,13 @@ fn every_bad_input_gets_one_line_with_the_remedy() {
         ),
         (
             "log.csv --model later.json --out out.csv",
-            "later.json: schema is \"pam-model/9\", expected \"pam-model/1\"; write it with pam-identify",
+            "later.json: schema is \"pam-model/9\", expected \"pam-model/1\"; a newer version wrote it; update the programs, \
+             or write it anew with pam-identify",
+        ),
+        (
+            "log.csv --model earlier.json --out out.csv",
+            "earlier.json: schema is \"pam-model/0\", expected \"pam-model/1\"; an older version wrote it; write it anew with \
+             pam-identify",
         ),
         (
             "log.csv --model gears.json --out out.csv",

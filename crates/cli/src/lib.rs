@@ -26,7 +26,6 @@
 mod console;
 mod exit;
 mod interrupt;
-mod nearest;
 mod output;
 mod output_error;
 mod program;
@@ -38,9 +37,9 @@ mod temporary;
 pub use console::{Console, Progress};
 pub use exit::{Verdict, exit_code};
 pub use interrupt::start;
-pub use nearest::nearest;
 pub use output::{Output, commit_all, finish_all, write_file};
 pub use output_error::OutputError;
+pub use pam_core::spelling::nearest;
 pub use program::{main, main_with_schema, print_schema};
 pub use read_args::ReadArgs;
 pub use run_args::RunArgs;

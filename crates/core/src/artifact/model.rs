@@ -278,7 +278,7 @@ impl ModelArtifact {
     /// # Errors
     /// [`ArtifactError`] names the file, the place and what to do.
     pub fn read(path: &Path) -> Result<(Self, String), ArtifactError> {
-        let (artifact, sha256): (Self, String) = super::read(path, SCHEMA, "write it with pam-identify")?;
+        let (artifact, sha256): (Self, String) = super::read(path, SCHEMA, "pam-identify")?;
         artifact.check().map_err(|what| ArtifactError::Implausible { path: path.to_owned(), what })?;
         Ok((artifact, sha256))
     }
