@@ -241,7 +241,7 @@ fn every_bad_command_line_gets_one_line_with_the_remedy() {
         ),
         (
             "good.csv --muscle none.toml --out model.json".to_owned(),
-            "cannot read muscle file none.toml: No such file or directory (os error 2)",
+            "cannot read muscle file none.toml: no such file; check the path",
         ),
         (
             "good.csv --muscle worse.toml --out model.json".to_owned(),

@@ -217,7 +217,7 @@ fn every_bad_input_gets_one_line_with_the_remedy() {
     bench.file("odd.json", &MODEL.replacen("\"form\"", "\"shape\"", 1));
     bench.file("gears.json", &with_effects(&[("stribek", &[])]));
     let cases = [
-        ("log.csv --model none.json --out out.csv", "cannot read none.json: No such file or directory (os error 2)"),
+        ("log.csv --model none.json --out out.csv", "cannot read none.json: no such file; check the path"),
         (
             "log.csv --model diagnosis.json --out out.csv",
             "diagnosis.json: schema is \"pam-diagnosis/1\", expected \"pam-model/1\"; write it with pam-identify",

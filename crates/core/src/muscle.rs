@@ -31,7 +31,7 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::spelling::{nearest, toml_fault};
+use crate::spelling::{nearest, toml_fault, unreadable};
 
 /// Dimensions of a muscle, in SI; see the [module](self) for symbols.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -247,7 +247,7 @@ fn nylon_modulus_gpa() -> f64 {
 #[derive(Debug, thiserror::Error)]
 pub enum MuscleError {
     /// The file cannot be read.
-    #[error("cannot read muscle file {}: {reason}", path.display())]
+    #[error("cannot read muscle file {}: {}", path.display(), unreadable(path, reason))]
     Read {
         /// File asked for.
         path: PathBuf,

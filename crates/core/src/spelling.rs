@@ -1,5 +1,8 @@
 //! The word that was probably meant.
 
+use std::io;
+use std::path::Path;
+
 /// The candidate nearest to `word`, if one is near enough to be worth suggesting; case does not count.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
@@ -12,6 +15,30 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         }
     }
     best.map(|(_, candidate)| candidate)
+}
+
+/// Why a file cannot be read, for a message; where it is missing, with the name of the folder that is nearest to its own.
+pub fn unreadable(path: &Path, reason: &io::Error) -> String {
+    if reason.kind() != io::ErrorKind::NotFound {
+        return reason.to_string();
+    }
+    let near = path.file_name().and_then(|name| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut names: Vec<String> =
+            folder.read_dir().ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+        // The order in which a folder lists its files is nobody's.
+        names.sort_unstable();
+        // The ending alone makes no name alike.
+        let stem = |name: &str| name.split('.').next().unwrap_or(name).to_owned();
+        let wanted = name.to_str()?;
+        names.retain(|name| nearest(&stem(wanted), [stem(name).as_str()]).is_some());
+        let near = nearest(wanted, names.iter().map(String::as_str))?;
+        Some(path.with_file_name(near).display().to_string())
+    });
+    match near {
+        Some(near) => format!("no such file; did you mean {near}?"),
+        None => "no such file; check the path".to_owned(),
+    }
 }
 
 /// What a parser said of an unknown word, with the nearest word it knows in place of all of them where one is near.
@@ -48,6 +75,21 @@ mod tests {
         assert_eq!(nearest("Stibreck", effects), Some("stribeck"));
         assert_eq!(nearest("viscous-dampning", effects), Some("viscous-damping"));
         assert_eq!(nearest("gearbox", effects), None);
+    }
+
+    #[test]
+    fn a_missing_file_is_told_its_nearest_neighbor() {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("model.json"), "").expect("a file");
+        let said = |name: &str| {
+            let path = folder.path().join(name);
+            let reason = std::fs::read(&path).expect_err("no such file");
+            unreadable(&path, &reason).replace(&folder.path().display().to_string(), "F")
+        };
+        assert_eq!(said("modle.json"), "no such file; did you mean F/model.json?");
+        assert_eq!(said("recording.csv"), "no such file; check the path");
+        assert_eq!(said("none.json"), "no such file; check the path");
+        assert_eq!(said("none/model.json"), "no such file; check the path");
     }
 
     #[test]

@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
+use pam_core::spelling::unreadable;
+
 /// Why a configuration is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
     /// The file cannot be read.
-    #[error("cannot read configuration {}: {reason}", path.display())]
+    #[error("cannot read configuration {}: {}", path.display(), unreadable(path, reason))]
     Read {
         /// File asked for.
         path: PathBuf,

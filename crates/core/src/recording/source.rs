@@ -11,6 +11,7 @@ use flate2::bufread::MultiGzDecoder;
 use sha2::{Digest, Sha256};
 
 use super::error::ReadErrorKind;
+use crate::spelling::unreadable;
 
 /// Bytes asked of the system at once.
 const READ_BYTES: usize = 256 * 1024;
@@ -54,7 +55,7 @@ impl ByteSource {
             Ok((true, _)) => Err(ReadErrorKind::Directory),
             Ok((false, file)) => Self::over(Box::new(file)),
             Err(source) => Err(match source.kind() {
-                io::ErrorKind::NotFound => ReadErrorKind::NotFound,
+                io::ErrorKind::NotFound => ReadErrorKind::NotFound { remedy: unreadable(path, &source) },
                 io::ErrorKind::PermissionDenied => ReadErrorKind::PermissionDenied,
                 io::ErrorKind::IsADirectory => ReadErrorKind::Directory,
                 _ => ReadErrorKind::Unreadable { source },
