@@ -26,6 +26,7 @@ fn main() {
         space: &space,
         muscle: &model.geometry,
         strand_modulus_pa: model.strand_modulus_pa,
+        only: None,
     };
     let limits =
         Limits { max_effects: n, excluded: Vec::new(), matters_above_n: None, sensor_floor_n: model.fit.noise_floor_n };
