@@ -16,9 +16,9 @@ use rayon::prelude::*;
 
 use crate::hypothesis::Guess;
 use crate::sheet::Ground;
-use crate::shift::shifted;
 use crate::state::{Setting, State};
 use crate::tangent::{Tangent, dot, norm};
+use pam_core::shift::shifted;
 
 /// Means over time that are compared, about; memories run over all instants.
 const MOST_ROWS: usize = 6000;

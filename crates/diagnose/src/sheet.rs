@@ -6,8 +6,8 @@ use pam_core::force::columns::{FRICTION, ForceColumns, N_COLUMNS};
 use rayon::prelude::*;
 
 use crate::hypothesis::{Guess, n_amplitudes};
-use crate::shift::shifted;
 use crate::track::Track;
+use pam_core::shift::shifted;
 
 /// Rows of a hypothesis.
 #[derive(Debug, Clone)]

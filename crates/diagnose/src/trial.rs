@@ -68,7 +68,7 @@ pub fn among(
     let residuals_n = setting.residuals_n(state);
     // Shapes are found on some of the instants; what an effect is worth is judged on all.
     let sampled = setting.sampled();
-    let Some(thin) = sampled.fit_near(state.guesses.clone(), &state) else {
+    let Some(thin) = sampled.fit_near(state.guesses.clone(), state) else {
         return Vec::new();
     };
     let costs: Vec<Option<f64>> = jobs
@@ -157,7 +157,7 @@ pub fn hold_out(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<H
 pub fn with(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<State> {
     let mut guesses = state.guesses.clone();
     guesses.push(guess.clone());
-    setting.fit_near(guesses, &state)
+    setting.fit_near(guesses, state)
 }
 
 /// Better values of the shape parameters of `guess` on top of `state`, one after the other, `sweeps` times; and the mean
