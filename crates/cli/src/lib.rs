@@ -41,5 +41,5 @@ pub use output::{Output, commit_all, finish_all, write_file};
 pub use output_error::OutputError;
 pub use pam_core::spelling::nearest;
 pub use program::{main, main_with_schema, print_schema};
-pub use read_args::ReadArgs;
+pub use read_args::{ReadArgs, read_recordings};
 pub use run_args::RunArgs;
