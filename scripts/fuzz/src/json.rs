@@ -6,7 +6,24 @@ use serde_json::{Map, Number, Value};
 
 /// Numbers at which arithmetic tends to break.
 const NUMBERS: [f64; 18] = [
-    0.0, -0.0, 1.0, -1.0, 0.5, 2.0, 1e-3, 1e3, 1e6, 1e9, -1e9, 1e-9, 1e-300, 1e150, 1e300, -1e300, f64::MAX, f64::MIN_POSITIVE,
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    2.0,
+    1e-3,
+    1e3,
+    1e6,
+    1e9,
+    -1e9,
+    1e-9,
+    1e-300,
+    1e150,
+    1e300,
+    -1e300,
+    f64::MAX,
+    f64::MIN_POSITIVE,
 ];
 
 /// One of `size` bytes of JSON changed in one to four places; none where they are no JSON or the result does not fit.

@@ -23,6 +23,9 @@ fuzz_target!(|data: &[u8]| {
         let bench = Bench::new(muscle, command).at_rate(20.0).expect("a rate in range");
         let _ = bench.record(1);
     }
+    if data.len() % 8 != 0 && !file.fit.is_empty() {
+        return; // Freed dimensions take fifty times as long to fit as the other parameters.
+    }
     let request = Request {
         estimation: vec![short_recording()],
         validation: Vec::new(),
