@@ -6,7 +6,7 @@ use anyhow::{Context as _, ensure};
 use pam_cli::{Console, Output, commit_all};
 use pam_core::artifact::diagnosis::Verdict;
 use pam_core::artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
-use pam_core::recording::{Recording, read_recording};
+use pam_core::recording::Recording;
 use pam_diagnosis::artifact::{Agreement, Head};
 use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose};
 use pam_diagnosis::traces::traces;
@@ -156,7 +156,7 @@ fn read_all(args: &Args, console: &Console, paths: &[PathBuf]) -> anyhow::Result
     let mut recordings = Vec::new();
     let mut notes: Vec<(String, Vec<String>)> = Vec::new();
     for path in paths {
-        let recording = read_recording(path, &options)?;
+        let recording = pam_cli::read_recording(path, &options, console)?;
         let mut said = recording.repairs.notes();
         if !recording.ignored_columns.is_empty() {
             said.push(format!("not used: {}", recording.ignored_columns.join(", ")));

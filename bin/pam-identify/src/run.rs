@@ -2,20 +2,28 @@
 
 use std::path::Path;
 
-use anyhow::ensure;
-use pam_cli::{Console, Output, Verdict, commit_all};
+use anyhow::{Context as _, ensure};
+use pam_cli::{Console, Output, Verdict, commit_all, write_example};
 use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
-use pam_core::recording::{Recording, read_recording};
+use pam_core::recording::Recording;
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 
 use crate::args::{Args, FormArg};
 use crate::{figure, tables};
 
+/// What `--example` writes.
+const EXAMPLE: &str = include_str!("../../../configs/muscle-nominal.toml");
+
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let console = args.run.start()?;
+    if args.example {
+        write_example(EXAMPLE, args.out.as_deref(), &args.run, &console)?;
+        return Ok(Verdict::Accepted);
+    }
+    let muscle_path = args.muscle.as_deref().context("--muscle is missing")?;
     if let Some(limit) = args.max_rmse_n {
         ensure!(limit > 0.0, "--max-rmse-n {limit} is not positive");
     }
@@ -34,12 +42,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
             held_out.display()
         );
     }
-    let inputs = || args.logs.iter().chain(&args.holdout).chain([&args.muscle]);
+    let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.muscle);
     let open = |path: &Path| Output::open(path)?.apart_from(inputs());
     let out = args.out.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
     let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
 
-    let (muscle, muscle_input) = read_muscle(&args.muscle)?;
+    let (muscle, muscle_input) = read_muscle(muscle_path)?;
     let estimation = read_all(args, &console, &args.logs)?;
     let validation = read_all(args, &console, &args.holdout)?;
     let mut hashes = vec![muscle_input];
@@ -155,7 +163,7 @@ fn compare_forms(
         "--compare-forms reads the recordings twice, and standard input can be read once only; name a file"
     );
     let other = if args.form == FormArg::Corrected { Form::AsPrinted } else { Form::Corrected };
-    let quiet = Console::new(true);
+    let quiet = Console::new(true, args.run.format);
     let estimation = read_all(args, &quiet, &args.logs)?;
     let validation = read_all(args, &quiet, &args.holdout)?;
     let checked = check(request(args, other, muscle.clone(), estimation, validation))?;
@@ -177,7 +185,7 @@ fn read_all(args: &Args, console: &Console, paths: &[std::path::PathBuf]) -> any
     let mut recordings = Vec::new();
     let mut notes: Vec<(String, Vec<String>)> = Vec::new();
     for path in paths {
-        let recording = read_recording(path, &options)?;
+        let recording = pam_cli::read_recording(path, &options, console)?;
         let mut said = recording.repairs.notes();
         if !recording.ignored_columns.is_empty() {
             said.push(format!("not used: {}", recording.ignored_columns.join(", ")));

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context as _, ensure};
 use pam_cli::{Console, Output, Verdict, commit_all};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool};
-use pam_core::recording::{ReadOptions, Recording, read_recording};
+use pam_core::recording::{ReadOptions, Recording};
 use pam_inverse_model::report::{Outcome, Prepared};
 
 use crate::args::{ActivationArg, Args};
@@ -97,7 +97,7 @@ fn read_all(args: &Args, console: &Console) -> anyhow::Result<Vec<Recording>> {
     let options = ReadOptions { force_required: false, ..args.read.options() };
     let mut recordings = Vec::new();
     for path in &args.logs {
-        let recording = read_recording(path, &options)?;
+        let recording = pam_cli::read_recording(path, &options, console)?;
         for note in recording.repairs.notes() {
             console.warn(format!("{}: {note}", recording.path));
         }
