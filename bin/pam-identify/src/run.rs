@@ -61,7 +61,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         return Ok(Verdict::Accepted);
     }
     let config = checked.config();
-    let found = checked.identify()?;
+    let progress = console.progress("searching", u64::from(args.starts) * u64::from(args.iterations));
+    let found = checked.identify_observed(&|| progress.advance(1))?;
+    drop(progress);
     let tool = Tool { name: "pam-identify".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
     let artifact = found.artifact(tool, hashes, config, args.run.seed);
 

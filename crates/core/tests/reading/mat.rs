@@ -42,8 +42,11 @@ fn a_structure_with_time_gives_its_labels_and_seconds() {
 
 #[test]
 fn a_measurement_of_dspace_gives_names_and_units() {
-    let options = options(["--map time_s=rec_001.X.Data", "--map length_mm=Model Root/L"]);
-    is_the_lift(&read(DSPACE, &options).unwrap());
+    for time in ["time_s", "rec_001.X.Data"] {
+        let mut options = options(["--map length_mm=Model Root/L"]);
+        options.map.push(format!("time_s={time}").parse().unwrap());
+        is_the_lift(&read(DSPACE, &options).unwrap());
+    }
 }
 
 #[test]
@@ -61,45 +64,45 @@ fn a_name_that_another_variable_has_too_is_found_by_its_path() {
 
 #[test]
 fn what_a_file_lacks_is_asked_for() {
-    assert_snapshot!(refusal(VECTORS, &ReadOptions::default()), @"");
-    assert_snapshot!(refusal(DSPACE, &options(["--map length_mm=Model Root/L"])), @"");
-    assert_snapshot!(refusal(SIMULINK, &options(["--map force_N=forze"])), @"");
-    assert_snapshot!(refusal(VECTORS, &options(["--columns time_s,pressure_kPa,length_mm,force_N"])), @"");
+    assert_snapshot!(refusal(VECTORS, &ReadOptions::default()), @"log.csv: no column gives pressure; name a column pressure_kPa in the header, point to one with --map pressure_kPa=COLUMN, or give a constant with --fixed pressure_kPa=VALUE (the file has time_s, p_meas, length_mm, force_N)");
+    assert_snapshot!(refusal(DSPACE, &options(["--map length_mm=Model/L"])), @r#"log.csv: --map names column "Model/L", which the file lacks; did you mean "Model Root/L"?"#);
+    assert_snapshot!(refusal(SIMULINK, &options(["--map force_N=forze"])), @r#"log.csv: --map names column "forze", which the file lacks; it has time_s, pressure_kPa, out.signals(2).values(:,1), out.signals(2).values(:,2)"#);
+    assert_snapshot!(refusal(VECTORS, &options(["--columns time_s,pressure_kPa,length_mm,force_N"])), @"log.csv: the file has a header of its own; leave --columns away and rename its columns with --map");
     let one = |name, n, value: &[f64]| array(Endian::Big, name, 6, &[n, 1], 9, &doubles(Endian::Big, value));
     let file = |arrays: &[Vec<u8>]| level_5(Endian::Big, arrays);
     let time = one("time_s", 3, &ramp(1.0));
-    assert_snapshot!(refusal(file(&[time.clone(), one("pressure", 3, &ramp(1.0))]), &ReadOptions::default()), @"");
+    assert_snapshot!(refusal(file(&[time.clone(), one("pressure", 3, &ramp(1.0))]), &ReadOptions::default()), @r#"log.csv: column "pressure" has no unit; add it to the name (kPa, Pa, MPa, bar or psi) or give it on the command line, for example --map pressure_kPa=pressure"#);
     let short = file(&[time.clone(), one("pressure_kPa", 2, &ramp(1.0)[..2])]);
     let rest = options(["--fixed length_mm=200", "--fixed force_N=1"]);
-    assert_snapshot!(refusal(short, &rest), @"");
-    assert_snapshot!(refusal(file(&[time.clone(), one("pressure_kPa", 3, &[1.0, f64::NAN, 2.0])]), &rest), @"");
-    assert_snapshot!(refusal(file(&[time, object("p")]), &ReadOptions::default()), @"");
-    assert_snapshot!(refusal(file(&[]), &ReadOptions::default()), @"");
+    assert_snapshot!(refusal(short, &rest), @r#"log.csv: "time_s" has 3 samples and "pressure_kPa" 2; save signals of one rate (in MATLAB: interp1), or name others with --map"#);
+    assert_snapshot!(refusal(file(&[time.clone(), one("pressure_kPa", 3, &[1.0, f64::NAN, 2.0])]), &rest), @r#"log.csv:2:2: "NaN" in column "pressure_kPa" is not finite; correct the row, or drop such rows with --skip-bad-rows"#);
+    assert_snapshot!(refusal(file(&[time, object("p")]), &ReadOptions::default()), @r#"log.csv: variable "p" is a timeseries object, which only MATLAB reads; save its numbers, for a timeseries: t = p.Time; x = p.Data; save('log.mat', 't', 'x', '-v7')"#);
+    assert_snapshot!(refusal(file(&[]), &ReadOptions::default()), @"log.csv: no column gives time; name a column time_s in the header or point to one with --map time_s=COLUMN (the file has no named column)");
 }
 
 #[test]
 fn other_formats_are_named_with_the_way_out() {
     let level_4 = [[0_u32, 3, 1, 0, 2].map(u32::to_le_bytes).concat(), b"p\0".to_vec(), vec![0; 24]].concat();
-    assert_snapshot!(refusal(level_4, &ReadOptions::default()), @"");
+    assert_snapshot!(refusal(level_4, &ReadOptions::default()), @"log.csv: this is a MATLAB file of version 4, which is not read; load it in MATLAB and save it with save -v7");
     let mut hdf5 = level_5(Endian::Little, &[]);
     hdf5[125] = 2;
     hdf5.resize(512, 0);
     hdf5.extend(b"\x89HDF\r\n\x1a\n");
-    assert_snapshot!(refusal(hdf5, &ReadOptions::default()), @"");
-    assert_snapshot!(refusal(b"\x89HDF\r\n\x1a\n", &ReadOptions::default()), @"");
-    assert_snapshot!(refusal(b"PAR1\x15\x04\x15\0", &ReadOptions::default()), @"");
+    assert_snapshot!(refusal(hdf5, &ReadOptions::default()), @"log.csv: this is a MATLAB file of version 7.3 (HDF5), which is not read; load it in MATLAB and save it with save -v7");
+    assert_snapshot!(refusal(b"\x89HDF\r\n\x1a\n", &ReadOptions::default()), @"log.csv: this is an HDF5 file, which is not read; export it as CSV");
+    assert_snapshot!(refusal(b"PAR1\x15\x04\x15\0", &ReadOptions::default()), @"log.csv: this is a Parquet file, which is not read; write it as CSV: python3 -c 'import pandas, sys; pandas.read_parquet(sys.argv[1]).to_csv(sys.argv[2], index=False)' log.parquet log.csv");
 }
 
 #[test]
 fn a_damaged_file_is_refused() {
-    assert_snapshot!(refusal(&SIMULINK[..SIMULINK.len() - 40], &ReadOptions::default()), @"");
+    assert_snapshot!(refusal(&SIMULINK[..SIMULINK.len() - 40], &ReadOptions::default()), @"log.csv: the MATLAB file is damaged or cut off (it ends within an element); copy it anew, or save it anew with save -v7");
     let mut wrong = SIMULINK.to_vec();
     wrong[140] ^= 0xff;
-    assert_snapshot!(refusal(wrong, &ReadOptions::default()), @"");
+    assert_snapshot!(refusal(wrong, &ReadOptions::default()), @"log.csv: the MATLAB file is damaged or cut off (a compressed variable cannot be decompressed); copy it anew, or save it anew with save -v7");
     let missing = array(Endian::Little, "p", 6, &[1 << 31, 1 << 31, 1 << 31], 9, &[]);
-    assert_snapshot!(refusal(level_5(Endian::Little, &[missing]), &ReadOptions::default()), @"");
+    assert_snapshot!(refusal(level_5(Endian::Little, &[missing]), &ReadOptions::default()), @"log.csv: the MATLAB file is damaged or cut off (an array is larger than any memory); copy it anew, or save it anew with save -v7");
     let too_few = array(Endian::Little, "p", 6, &[4, 1], 9, &doubles(Endian::Little, &ramp(1.0)));
-    assert_snapshot!(refusal(level_5(Endian::Little, &[too_few]), &ReadOptions::default()), @"");
+    assert_snapshot!(refusal(level_5(Endian::Little, &[too_few]), &ReadOptions::default()), @"log.csv: the MATLAB file is damaged or cut off (an array has not as many numbers as its dimensions say); copy it anew, or save it anew with save -v7");
 }
 
 #[test]
@@ -108,7 +111,7 @@ fn structures_beyond_any_depth_and_without_fields_do_no_harm() {
     for _ in 0..5000 {
         deep = structure(Endian::Little, "s", &[("s", deep)]);
     }
-    assert_snapshot!(refusal(level_5(Endian::Little, &[deep]), &ReadOptions::default()), @"");
+    assert_snapshot!(refusal(level_5(Endian::Little, &[deep]), &ReadOptions::default()), @"log.csv: the MATLAB file is damaged or cut off (its structures are too deep); copy it anew, or save it anew with save -v7");
     let many = parts(
         Endian::Little,
         "s",

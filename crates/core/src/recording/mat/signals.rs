@@ -8,6 +8,7 @@
 //! | Simulink's structure with time: `out.time`, `out.signals(2).values` with a label | `time_s`, the label, or the path |
 //! | a time series as a structure: `p.Time`, `p.Data`        | `p.Time`, `p` or `p.Data`                         |
 //! | dSPACE: `rec.Y(2)` with `Name`, `Unit`, `Data`          | the name with its unit, the name, or `rec.Y(2).Data` |
+| dSPACE: `rec.X` with `Unit` s and `Data`                | `time_s` or `rec.X.Data`                          |
 //!
 //! Simulink's time is in seconds, always; of all else the unit is in the name, in the file beside it, or asked for.
 
@@ -165,8 +166,11 @@ impl<'a> Signals<'a> {
             if let (Name::UnitMissing(_), false) = (Name::read(&name), unit.is_empty()) {
                 better.push(format!("{name}_{unit}"));
             }
+            let is_axis = path.split('(').next().is_some_and(|path| path.ends_with(".X"));
             if !name.is_empty() {
                 better.push(name);
+            } else if is_axis && Quantity::Time.unit(&unit).is_some() {
+                better.push(format!("{}_{unit}", Quantity::Time));
             }
             self.value(data, &at("Data"), &better);
         } else {
@@ -176,16 +180,19 @@ impl<'a> Signals<'a> {
         }
     }
 
-    /// Simulink writes the same time beside every signal: one of them is enough.
+    /// Simulink writes the same time beside every signal: one column is enough, under every one of its names.
     fn drop_equal_times(&mut self) {
         let is_time = |column: &Column<'_>| column.names.first().is_some_and(|name| *name == seconds());
-        let Some(first) = self.columns.iter().find(|column| is_time(column)).cloned() else { return };
-        let mut seen = false;
-        self.columns.retain(|column| {
-            let again = seen && is_time(column) && column.samples().eq(first.samples());
-            seen |= is_time(column);
-            !again
-        });
+        let Some(first) = self.columns.iter().position(is_time) else { return };
+        let later = self.columns.split_off(first + 1);
+        for column in later {
+            let kept = &mut self.columns[first];
+            if is_time(&column) && column.samples().eq(kept.samples()) {
+                kept.names.extend(column.names.into_iter().skip(1));
+            } else {
+                self.columns.push(column);
+            }
+        }
     }
 }
 
