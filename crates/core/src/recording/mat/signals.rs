@@ -8,7 +8,7 @@
 //! | Simulink's structure with time: `out.time`, `out.signals(2).values` with a label | `time_s`, the label, or the path |
 //! | a time series as a structure: `p.Time`, `p.Data`        | `p.Time`, `p` or `p.Data`                         |
 //! | dSPACE: `rec.Y(2)` with `Name`, `Unit`, `Data`          | the name with its unit, the name, or `rec.Y(2).Data` |
-| dSPACE: `rec.X` with `Unit` s and `Data`                | `time_s` or `rec.X.Data`                          |
+//! | dSPACE: `rec.X` with `Unit` s and `Data`                | `time_s` or `rec.X.Data`                          |
 //!
 //! Simulink's time is in seconds, always; of all else the unit is in the name, in the file beside it, or asked for.
 
