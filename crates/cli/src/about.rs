@@ -68,9 +68,18 @@ pub(crate) fn asked_for(
         let mut page = Vec::new();
         // Writing to memory cannot fail.
         let _ = clap_mangen::Man::new(command()).render(&mut page);
-        let page = String::from_utf8_lossy(&page).replacen(".SH EXTRA", ".SH EXAMPLES AND EXIT CODES", 1);
-        // Ragged, so that commands keep single blanks.
-        return Some(page.replacen(".SH NAME", ".ad l\n.SH NAME", 1).into_bytes());
+        return Some(finished(&String::from_utf8_lossy(&page)).into_bytes());
     }
     None
+}
+
+/// The page under the headings that it should have, ragged and without hyphenation so that commands stay as they are
+/// typed, and in the characters that every formatter reads.
+fn finished(page: &str) -> String {
+    let page =
+        page.replacen(".SH EXTRA", ".SH EXAMPLES AND EXIT CODES", 1).replacen(".SH NAME", ".ad l\n.nh\n.SH NAME", 1);
+    let escaped = |character: char| {
+        if character.is_ascii() { character.to_string() } else { format!("\\[u{:04X}]", u32::from(character)) }
+    };
+    page.chars().map(escaped).collect()
 }
