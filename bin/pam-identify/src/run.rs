@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context as _, ensure};
-use pam_cli::{Console, Output, Verdict, commit_all, write_example};
+use pam_cli::{Console, Output, Verdict, commit_all, read_recordings, write_example};
 use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
@@ -48,11 +48,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
 
     let (muscle, muscle_input) = read_muscle(muscle_path)?;
-    let estimation = read_all(args, &console, &args.logs)?;
-    let validation = read_all(args, &console, &args.holdout)?;
+    let estimation = read_recordings(&args.logs, &args.read.options(), &console)?;
+    let validation = read_recordings(&args.holdout, &args.read.options(), &console)?;
     let mut hashes = vec![muscle_input];
-    hashes.extend(estimation.iter().map(|recording| input(recording, InputRole::Estimation)));
-    hashes.extend(validation.iter().map(|recording| input(recording, InputRole::Validation)));
+    hashes.extend(estimation.iter().map(|recording| Input::recording(recording, InputRole::Estimation)));
+    hashes.extend(validation.iter().map(|recording| Input::recording(recording, InputRole::Validation)));
 
     let checked = check(request(args, args.form.form(), muscle.clone(), estimation, validation))?;
     console.text(tables::gate(checked.gates()));
@@ -166,8 +166,8 @@ fn compare_forms(
     );
     let other = if args.form == FormArg::Corrected { Form::AsPrinted } else { Form::Corrected };
     let quiet = Console::new(true, args.run.format);
-    let estimation = read_all(args, &quiet, &args.logs)?;
-    let validation = read_all(args, &quiet, &args.holdout)?;
+    let estimation = read_recordings(&args.logs, &args.read.options(), &quiet)?;
+    let validation = read_recordings(&args.holdout, &args.read.options(), &quiet)?;
     let checked = check(request(args, other, muscle.clone(), estimation, validation))?;
     let config = checked.config();
     let tool = artifact.tool.clone();
@@ -180,38 +180,4 @@ fn read_muscle(path: &Path) -> anyhow::Result<(MuscleFile, Input)> {
     // Read anew for the digest alone: a muscle file is a few hundred bytes.
     let sha256 = sha256_hex(&std::fs::read(path)?);
     Ok((muscle, Input { path: path.display().to_string(), sha256, role: InputRole::Muscle }))
-}
-
-fn read_all(args: &Args, console: &Console, paths: &[std::path::PathBuf]) -> anyhow::Result<Vec<Recording>> {
-    let options = args.read.options();
-    let mut recordings = Vec::new();
-    let mut notes: Vec<(String, Vec<String>)> = Vec::new();
-    for path in paths {
-        let recording = pam_cli::read_recording(path, &options, console)?;
-        let mut said = recording.repairs.notes();
-        if !recording.ignored_columns.is_empty() {
-            said.push(format!("not used: {}", recording.ignored_columns.join(", ")));
-        }
-        for words in said {
-            match notes.iter_mut().find(|(known, _)| *known == words) {
-                Some((_, paths)) => paths.push(recording.path.clone()),
-                None => notes.push((words, vec![recording.path.clone()])),
-            }
-        }
-        recordings.push(recording);
-    }
-    // Files of one logger need the same repairs: say so once.
-    for (words, paths) in notes {
-        let others = match paths.len() {
-            1 => String::new(),
-            2 => " and another".to_owned(),
-            n => format!(" and {} others", n - 1),
-        };
-        console.note(format!("{}{others}: {words}", paths[0]));
-    }
-    Ok(recordings)
-}
-
-fn input(recording: &Recording, role: InputRole) -> Input {
-    Input { path: recording.path.clone(), sha256: recording.sha256.clone(), role }
 }

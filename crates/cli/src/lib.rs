@@ -50,5 +50,5 @@ pub use output::{Output, commit_all, finish_all, write_file};
 pub use output_error::OutputError;
 pub use program::{main, main_with_schema};
 pub use read_args::ReadArgs;
-pub use reading::read_recording;
+pub use reading::{read_recording, read_recordings};
 pub use run_args::RunArgs;
