@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use anyhow::ensure;
-use pam_cli::{Console, Output, Verdict, commit_all, read_recordings};
+use anyhow::{Context as _, ensure};
+use pam_cli::{Console, Output, Verdict, commit_all, read_recordings, write_example};
 use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
@@ -14,8 +14,16 @@ use pam_identification::identify::{Identified, Request, check};
 use crate::args::{Args, FormArg};
 use crate::{figure, tables};
 
+/// What `--example` writes.
+const EXAMPLE: &str = include_str!("../../../configs/muscle-nominal.toml");
+
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let console = args.run.start()?;
+    if args.example {
+        write_example(EXAMPLE, args.out.as_deref(), &args.run, &console)?;
+        return Ok(Verdict::Accepted);
+    }
+    let muscle_path = args.muscle.as_deref().context("--muscle is missing")?;
     if let Some(limit) = args.max_rmse_n {
         ensure!(limit > 0.0, "--max-rmse-n {limit} is not positive");
     }
@@ -34,12 +42,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
             held_out.display()
         );
     }
-    let inputs = || args.logs.iter().chain(&args.holdout).chain([&args.muscle]);
+    let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.muscle);
     let open = |path: &Path| Output::open(path)?.apart_from(inputs());
     let out = args.out.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
     let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
 
-    let (muscle, muscle_input) = read_muscle(&args.muscle)?;
+    let (muscle, muscle_input) = read_muscle(muscle_path)?;
     let estimation = read_recordings(&args.logs, &args.read.options(), &console)?;
     let validation = read_recordings(&args.holdout, &args.read.options(), &console)?;
     let mut hashes = vec![muscle_input];
@@ -53,7 +61,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         return Ok(Verdict::Accepted);
     }
     let config = checked.config();
-    let found = checked.identify()?;
+    let progress = console.progress("searching", u64::from(args.starts) * u64::from(args.iterations));
+    let found = checked.identify_observed(&|| progress.advance(1))?;
+    drop(progress);
     let tool = Tool { name: "pam-identify".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
     let artifact = found.artifact(tool, hashes, config, args.run.seed);
 
@@ -155,7 +165,7 @@ fn compare_forms(
         "--compare-forms reads the recordings twice, and standard input can be read once only; name a file"
     );
     let other = if args.form == FormArg::Corrected { Form::AsPrinted } else { Form::Corrected };
-    let quiet = Console::new(true);
+    let quiet = Console::new(true, args.run.format);
     let estimation = read_recordings(&args.logs, &args.read.options(), &quiet)?;
     let validation = read_recordings(&args.holdout, &args.read.options(), &quiet)?;
     let checked = check(request(args, other, muscle.clone(), estimation, validation))?;

@@ -1,12 +1,6 @@
 //! Options that every program reading recordings takes.
 
-use std::path::PathBuf;
-
-use pam_core::recording::{
-    Calibration, ColumnMap, Columns, FixedChannel, ReadError, ReadOptions, Recording, read_recording,
-};
-
-use crate::Console;
+use pam_core::recording::{Calibration, ColumnMap, Columns, FixedChannel, ReadOptions};
 
 const HEADING: &str = "Reading recordings";
 
@@ -42,42 +36,6 @@ impl ReadArgs {
             ..ReadOptions::default()
         }
     }
-}
-
-/// Reads every recording, and notes what was repaired or left aside; once where files of one logger need the same.
-///
-/// # Errors
-/// [`ReadError`] of the first that cannot be read.
-pub fn read_recordings(
-    paths: &[PathBuf],
-    options: &ReadOptions,
-    console: &Console,
-) -> Result<Vec<Recording>, ReadError> {
-    let mut recordings = Vec::new();
-    let mut notes: Vec<(String, Vec<String>)> = Vec::new();
-    for path in paths {
-        let recording = read_recording(path, options)?;
-        let mut said = recording.repairs.notes();
-        if !recording.ignored_columns.is_empty() {
-            said.push(format!("not used: {}", recording.ignored_columns.join(", ")));
-        }
-        for words in said {
-            match notes.iter_mut().find(|(known, _)| *known == words) {
-                Some((_, paths)) => paths.push(recording.path.clone()),
-                None => notes.push((words, vec![recording.path.clone()])),
-            }
-        }
-        recordings.push(recording);
-    }
-    for (words, paths) in notes {
-        let others = match paths.len() {
-            1 => String::new(),
-            2 => " and another".to_owned(),
-            n => format!(" and {} others", n - 1),
-        };
-        console.note(format!("{}{others}: {words}", paths[0]));
-    }
-    Ok(recordings)
 }
 
 #[cfg(test)]
