@@ -71,6 +71,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     console.text(tables::agreement(&artifact));
     if let Some(table) = tables::unbounded(&artifact) {
         console.text(table);
+    } else if args.unbounded {
+        console.warn("--unbounded: these recordings are too far from any muscle's for weights without bounds");
     }
     if args.compare_forms {
         console.text(compare_forms(args, &console, &muscle, &artifact)?);

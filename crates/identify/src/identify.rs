@@ -223,7 +223,7 @@ impl Checked {
         let estimation_fit = evaluate(&estimation, &model)?;
         let validation_fit = evaluate(&validation, &model)?;
         let noise_floor_n = noise_floor_n(&estimation, &model)?;
-        let unbounded = if self.unbounded { Some(unbounded_fit(&columns, &condensed, &validation)?) } else { None };
+        let unbounded = if self.unbounded { unbounded_fit(&columns, &condensed, &validation)? } else { None };
         let lags = faults::lag::find(&estimation, &columns)
             .map_err(|reason| IdentifyError::Samples { path: estimation[0].recording.path.clone(), reason })?;
         let mut identified = Identified {
@@ -408,22 +408,23 @@ struct Settled {
     fit: Fit,
 }
 
+/// Weights without bounds; none where the recordings are so far from any muscle's that there are none.
 fn unbounded_fit(
     columns: &ForceColumns,
     condensed: &Condensed,
     validation: &[Prepared],
-) -> Result<UnboundedFit, IdentifyError> {
-    let weights = unbounded::best_weights(&condensed.total);
+) -> Result<Option<UnboundedFit>, IdentifyError> {
+    let Some(weights) = unbounded::best_weights(&condensed.total) else { return Ok(None) };
     let rmse_n = |condensed: &Condensed| {
         (condensed.total.residual_square_sum(&weights) / condensed.total.n_rows().max(1) as f64).sqrt()
     };
     let validation_rmse_n =
         if validation.is_empty() { None } else { Some(rmse_n(&condense(validation, columns, 1, None)?)) };
-    Ok(UnboundedFit {
+    Ok(Some(UnboundedFit {
         estimation_rmse_n: rmse_n(condensed),
         validation_rmse_n,
         implied: unbounded::implied(columns, &weights),
-    })
+    }))
 }
 
 impl Identified {

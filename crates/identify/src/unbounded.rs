@@ -9,9 +9,12 @@ use pam_optim::summary::Summary;
 /// it to no purpose here.
 const TAKING_PART: [usize; 9] = [0, 1, 2, 3, BLADDER, BLADDER + 1, BRAID, FRICTION, FRICTION + 1];
 
+/// Rotations after which a decomposition has failed; some dozen do, and columns beyond all sense never end.
+const MAX_ROTATIONS: usize = 1000;
+
 /// Weights that fit `summary` best, with no bound on any of them; all [`N_COLUMNS`], those that take no part
-/// zero.
-pub fn best_weights(summary: &Summary) -> Vec<f64> {
+/// zero. None where the columns are so far from any muscle's that arithmetic fails.
+pub fn best_weights(summary: &Summary) -> Option<Vec<f64>> {
     let n = summary.n_columns();
     let mut matrix = DMatrix::from_fn(n, TAKING_PART.len(), |row, column| summary.row(row)[TAKING_PART[column]]);
     let rhs = DVector::from_fn(n, |row, _| summary.row(row)[n]);
@@ -22,12 +25,11 @@ pub fn best_weights(summary: &Summary) -> Vec<f64> {
     }
     let mut weights = vec![0.0; N_COLUMNS];
     // Columns that the data cannot tell apart share their weight: minimum norm.
-    if let Ok(solved) = matrix.svd(true, true).solve(&rhs, 1e-10) {
-        for (position, &column) in TAKING_PART.iter().enumerate() {
-            weights[column] = solved[position] / scales[position];
-        }
+    let solved = matrix.try_svd(true, true, 5.0 * f64::EPSILON, MAX_ROTATIONS)?.solve(&rhs, 1e-10).ok()?;
+    for (position, &column) in TAKING_PART.iter().enumerate() {
+        weights[column] = solved[position] / scales[position];
     }
-    weights
+    weights.iter().all(|weight| weight.is_finite()).then_some(weights)
 }
 
 /// What free weights would mean as parameters, and whether a muscle can have them.
@@ -59,4 +61,37 @@ pub fn implied(columns: &ForceColumns, weights: &[f64]) -> Vec<ImpliedParameter>
 /// Within 20 %, which no uncertainty of a bench recording exceeds.
 fn agrees(left: f64, right: f64) -> bool {
     (left - right).abs() <= 0.2 * left.abs().max(right.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns that have nothing to do with one another, and `y` with a share of 1 of each.
+    fn summary(first: f64) -> Summary {
+        let width = N_COLUMNS + 1;
+        let mut triangle = vec![0.0; width * width];
+        for row in 0..N_COLUMNS {
+            triangle[row * width + row] = 1.0;
+            triangle[row * width + N_COLUMNS] = 1.0;
+        }
+        triangle[0] = first;
+        Summary::from_triangle(N_COLUMNS, triangle, 100)
+    }
+
+    #[test]
+    fn weights_are_those_of_the_columns() {
+        let weights = best_weights(&summary(2.0)).expect("columns in order");
+        assert!((weights[0] - 0.5).abs() < 1e-12 && (weights[1] - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn columns_beyond_all_sense_have_no_weights_and_end() {
+        for first in [f64::INFINITY, f64::NAN, 1e-320] {
+            assert!(
+                best_weights(&summary(first)).is_none_or(|weights| weights.iter().all(|weight| weight.is_finite()))
+            );
+        }
+        assert_eq!(best_weights(&summary(f64::INFINITY)), None);
+    }
 }
