@@ -6,7 +6,7 @@ DATA := datasets/bench-nominal
 # Where cargo builds to: target, unless the user's environment or configuration says otherwise.
 BIN = $(shell $(CARGO) metadata --no-deps --offline --format-version 1 | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release
 
-.PHONY: all test check bench tables datasets recordings prove prove-real clean cargo-is-there
+.PHONY: all test check bench compare tables datasets recordings prove prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -36,6 +36,11 @@ check: cargo-is-there
 bench: cargo-is-there
 	@$(CARGO) bench --locked --workspace
 	@scripts/bench-programs
+
+# Side by side with pyswarms, SciPy, pycma, PINTS, PySINDy and scikit-learn, into scripts/compare; needs Python 3.11, a
+# network the first time, and twenty quiet minutes.
+compare: cargo-is-there
+	@scripts/compare/compare
 
 # Every table and figure of the chain, from seeds, into out/tables.
 tables: cargo-is-there
