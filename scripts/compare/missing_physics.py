@@ -45,13 +45,15 @@ def problem(programs, case, scratch):
     return effects, [name for name, keep in zip(names, kept) if keep], Problem(library, residual, force.std())
 
 
-def named(names, weights):
-    """Families in order of the largest weight of a column; those without weight are not named."""
-    largest = {}
-    for name, weight in zip(names, np.abs(weights)):
-        if weight > 0:
-            largest[name] = max(weight, largest.get(name, 0.0))
-    return sorted(largest, key=largest.get, reverse=True)
+def named(names, weights, asked):
+    """Families in order of what their columns together contribute; those without weight are not named."""
+    gram = np.tensordot(ALL, asked.gram, 1)
+    contributes = {}
+    for name in dict.fromkeys(names):
+        part = np.where(np.array(names) == name, weights, 0.0)
+        if part.any():
+            contributes[name] = part @ gram @ part
+    return sorted(contributes, key=contributes.get, reverse=True)
 
 
 class Problem:
@@ -210,7 +212,7 @@ def judge(programs, scratch, folder, seed, limit=None):
             start = time.perf_counter()
             weights = weigh(asked)
             seconds = time.perf_counter() - start
-            count(sheets[peer], concealed, truth["kind"], named(names, weights), effects.get, seconds)
+            count(sheets[peer], concealed, truth["kind"], named(names, weights, asked), effects.get, seconds)
     for sheet in sheets.values():
         sheet["seconds"] = median(sheet["seconds"])
     return {"n_cases": len(cases), "seed": seed, "n_columns": n_columns, "building_s": median(building), "lines": [

@@ -31,7 +31,10 @@ def with_friction(model, coefficient):
 def direction(programs, log, model, scratch):
     """Direction of motion of every row, as the programs take it: what friction does to the model's force."""
     without, rubbed = (modelled(programs, log, with_friction(model, f), scratch) for f in (0.0, 0.01))
-    return np.sign(np.round(without - rubbed, 3))
+    # Friction is a share of the pressure, which noise takes below zero where the muscle is vented.
+    signs = np.sign(np.round(without - rubbed, 3)) * np.sign(read(log)[1])
+    known = np.flatnonzero(signs)
+    return signs[known[np.maximum(np.searchsorted(known, np.arange(len(signs)), side="right") - 1, 0)]]
 
 
 def near_flip(signs, rows):

@@ -106,7 +106,7 @@ def missing_physics(part):
 concealed; the truth is sealed before anything is diagnosed. Peers regress the residual of the identified model on up to
 {part['n_columns']} columns that express the whole catalogue, most in the very form in which effects are concealed, at several inner
 parameters, and cleared of what a refit of the base model would absorb. A family of columns is named where any of its columns
-has a weight, in order of the largest; where effects make nearly the same column, it counts as right for each. `pam-diagnose` has to say
+has a weight, in order of what they contribute together; where effects make nearly the same column, it counts as right for each. `pam-diagnose` has to say
 the very id. STLSQ's threshold is in percent of the deviation of the force; 1 % and 3 % are what it is used with, the others were
 added because typical effects lie below them. LASSO's penalty comes from {6} blocked folds. Time of peers: the regression alone, without building
 the columns ({seconds(part['building_s'])}); ours: the whole process.
