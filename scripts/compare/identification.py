@@ -6,7 +6,7 @@ import numpy as np
 
 import eq11
 from identification_peer import BUDGET, SOLVERS
-from process import ROOT, median, peer, run, say
+from process import ROOT, median, peer, processor_s, run, say
 from recording import direction, modelled, near_flip, read
 
 MUSCLE = ROOT / "configs/muscle-nominal.toml"
@@ -46,11 +46,12 @@ def compare(programs, scratch, quick, seed):
     solvers = [name for name in SOLVERS if not (quick and "default" in name)]
     runs = {name: [] for name in [OURS, *solvers]}
     checks = []
-    for repetition in range(2 if quick else 3):
+    for repetition in range(1 if quick else 3):
         for _ in range(3):
+            before = processor_s()
             whole, _ = run([*fit, "--seed", repetition + 1, "--out", model_path], scratch)
             ours = eq11.theta_of(json.loads(model_path.read_text()))
-            runs[OURS].append({"whole_s": whole, "theta": list(ours)})
+            runs[OURS].append({"whole_s": whole, "processor_s": processor_s() - before, "theta": list(ours)})
             checks.append(run([*fit, "--check"], scratch)[0])
         for name in solvers:
             say(f"identification: {name}, seed {repetition + 1}")
@@ -63,6 +64,7 @@ def compare(programs, scratch, quick, seed):
         lines.append({
             "name": name,
             "whole_s": whole,
+            "processor_s": median([result["processor_s"] for result in results]),
             # Of a program, what is left of it without reading and checking the input.
             "fit_s": whole - median(checks) if ours else median([result["fit_s"] for result in results]),
             "evaluations": None if ours else round(median([result["evaluations"] for result in results])),

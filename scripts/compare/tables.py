@@ -45,7 +45,8 @@ def identification(part):
         rows.append([
             line["name"], line["evaluations"] or "–", spread(line["rmse_n"], "{:.4f}"),
             f"{100 * line['parameter_error']:.2g} %", seconds(line["fit_s"]), seconds(line["whole_s"]),
-            times(line["fit_s"] / ours["fit_s"]), times(line["whole_s"] / ours["whole_s"]),
+            seconds(line["processor_s"]), times(line["fit_s"] / ours["fit_s"]), times(line["whole_s"] / ours["whole_s"]),
+            times(line["processor_s"] / ours["processor_s"]),
         ])
     swarm = lines["pyswarms GlobalBest"]
     good = [line for name, line in lines.items() if "good start" in name]
@@ -63,9 +64,11 @@ evolution: 60 × 200 moves = {part['budget']:,} evaluations, or their own stop i
 local searches stop by themselves. {part['n_runs']} seeds.
 
 `whole` is the process from start to end with reading the file; `fit` is the search alone (of `pam-identify`, which also finds
-directions, judges quality and computes standard errors by leaving stretches out, everything beyond what `--check` does).
+directions, judges quality and computes standard errors by leaving stretches out, everything beyond what `--check` does);
+`processor` the time that the whole process kept processors busy, which other work on the machine changes less.
 
-{table(["", "evaluations", "RMSE, N", "worst parameter", "fit", "whole", "fit, of ours", "whole, of ours"], rows)}
+{table(["", "evaluations", "RMSE, N", "worst parameter", "fit", "whole", "processor", "fit, of ours", "whole, of ours",
+        "processor, of ours"], rows)}
 {verdict(ratio >= 100 and as_good, "100 times as fast as pyswarms, whole program, at equal or lower RMSE",
          f"{times(ratio)} times, RMSE {'not higher' if as_good else 'higher'}")}
 {verdict(min(faster) >= 1, "whole program not slower than least_squares from its good start",
