@@ -85,7 +85,7 @@ def compare(programs, scratch, quick, seed):
         whole, per_lift, peers = [], [], []
         for _ in range(2 if quick else 5):
             whole += [lift(step, "--out", track) for _ in range(3)]
-            few, many = (lift(step, "--trials", n, "--threads", 1) for n in (n_few, n_many))
+            few, many = (lift(step, "--out", track, "--trials", n, "--threads", 1) for n in (n_few, n_many))
             per_lift.append((many - few) / (n_many - n_few))
             peers.append(python(chosen["method"], chosen["rtol"]))
         lines.append({

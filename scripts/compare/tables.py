@@ -112,7 +112,7 @@ parameters, and cleared of what a refit of the base model would absorb. A family
 has a weight, in order of what they contribute together; where effects make nearly the same column, it counts as right for each. `pam-diagnose` has to say
 the very id. STLSQ's threshold is in percent of the deviation of the force; 1 % and 3 % are what it is used with, the others were
 added because typical effects lie below them. LASSO's penalty comes from {6} blocked folds. Time of peers: the regression alone, without building
-the columns ({seconds(part['building_s'])}); ours: the whole process.
+the columns ({seconds(part['building_s'])}), and LASSO's second row takes the folds of its first; ours: the whole process.
 
 {table(["", "one concealed: named first", "among the names", "alone", "concealed effects named", "within as many names as are concealed",
         "false names", "nothing concealed: named something", "false names there", "time of a case"], rows)}
