@@ -78,7 +78,7 @@ def compare(programs, scratch, quick, seed):
             if ladder[-1]["error_rad"] < min(errors.values()):
                 break
     lines = []
-    n_few, n_many = (20, 120) if quick else (100, 1100)
+    n_few, n_many = (10, 60) if quick else (20, 220)
     for step in steps_ms:
         good = [entry for entry in ladder if entry["error_rad"] <= errors[step]]
         chosen = min(good, key=lambda entry: entry["fit_s"])

@@ -11,6 +11,8 @@ from recording import direction, modelled, near_flip, read
 
 MUSCLE = ROOT / "configs/muscle-nominal.toml"
 OURS = "pam-identify"
+# By default it starts four swarms, each of as many evaluations as a peer's one.
+VARIANTS = {OURS: [], "pam-identify --starts 1": ["--starts", 1]}
 
 
 def compare(programs, scratch, quick, seed):
@@ -18,7 +20,7 @@ def compare(programs, scratch, quick, seed):
         scratch / name for name in ("log.csv", "truth.json", "model.json", "rows.csv")
     )
     run([programs / "pam-bench", "--muscle", MUSCLE, "--protocol", "isobaric-triangles", "--rate", 200,
-         "--duration-scale", 0.1189, "--seed", seed, "--out", log, "--truth", truth_path, "--quiet"], scratch)
+         "--duration-scale", 0.129, "--seed", seed, "--out", log, "--truth", truth_path, "--quiet"], scratch)
     fit = [programs / "pam-identify", log, "--muscle", MUSCLE, "--quiet"]
     run([*fit, "--out", model_path], scratch)
     model, truth = json.loads(model_path.read_text()), json.loads(truth_path.read_text())
@@ -44,14 +46,16 @@ def compare(programs, scratch, quick, seed):
         return float(np.sqrt(np.mean((muscle.force(judged, theta) - force[counts]) ** 2))), float(parameters.max())
 
     solvers = [name for name in SOLVERS if not (quick and "default" in name)]
-    runs = {name: [] for name in [OURS, *solvers]}
+    runs = {name: [] for name in [*VARIANTS, *solvers]}
     checks = []
     for repetition in range(1 if quick else 3):
         for _ in range(3):
-            before = processor_s()
-            whole, _ = run([*fit, "--seed", repetition + 1, "--out", model_path], scratch)
-            ours = eq11.theta_of(json.loads(model_path.read_text()))
-            runs[OURS].append({"whole_s": whole, "processor_s": processor_s() - before, "theta": list(ours)})
+            for name, options in VARIANTS.items():
+                before = processor_s()
+                whole, _ = run([*fit, *options, "--seed", repetition + 1, "--out", model_path], scratch)
+                used = processor_s() - before
+                theta = eq11.theta_of(json.loads(model_path.read_text()))
+                runs[name].append({"whole_s": whole, "processor_s": used, "theta": list(theta)})
             checks.append(run([*fit, "--check"], scratch)[0])
         for name in solvers:
             say(f"identification: {name}, seed {repetition + 1}")
@@ -60,7 +64,7 @@ def compare(programs, scratch, quick, seed):
     for name, results in runs.items():
         qualities = [quality(result["theta"]) for result in results]
         whole = median([result["whole_s"] for result in results])
-        ours = name == OURS
+        ours = name in VARIANTS
         lines.append({
             "name": name,
             "whole_s": whole,

@@ -86,8 +86,13 @@ def least_squares_from(start, method="trf"):
     return solve
 
 
+# The same with eq. 11 evaluated whole each time, as a first script would: the only peer to compute again what does not
+# depend on the parameters.
+FIRST_SCRIPT = "pyswarms GlobalBest, first script"
+
 SOLVERS = {
     "pyswarms GlobalBest": pyswarms,
+    FIRST_SCRIPT: pyswarms,
     "PINTS PSO": pints_by("PSO"),
     "PINTS CMA-ES": pints_by("CMAES"),
     "pycma": pycma,
@@ -113,7 +118,8 @@ def main():
     def residuals(x):
         nonlocal evaluations
         evaluations += 1
-        return muscle.force(rows, low + x * (high - low)) - force
+        now = muscle.rows(pressure, length, signs) if solver == FIRST_SCRIPT else rows
+        return muscle.force(now, low + x * (high - low)) - force
 
     def cost(x):
         residual = residuals(x)
