@@ -84,7 +84,7 @@ def adam(size, training, held, seed, budget_s):
     """(seconds, error) along a training by adam; judging does not count."""
     from sklearn.neural_network import MLPRegressor
 
-    network = MLPRegressor(size, activation="tanh", solver="adam", alpha=0, random_state=seed)
+    network = MLPRegressor(hidden_layer_sizes=size, activation="tanh", solver="adam", alpha=0, random_state=seed)
     spent, track, judge_at = 0.0, [], 0.0
     while spent < budget_s:
         start = time.perf_counter()
@@ -102,7 +102,7 @@ def lbfgs(size, training, held, seed, budget_s):
 
     track = []
     for steps in LBFGS_STEPS:
-        network = MLPRegressor(size, activation="tanh", solver="lbfgs", alpha=0, tol=1e-12, random_state=seed,
+        network = MLPRegressor(hidden_layer_sizes=size, activation="tanh", solver="lbfgs", alpha=0, tol=1e-12, random_state=seed,
                                max_iter=steps, max_fun=100 * steps)
         start = time.perf_counter()
         network.fit(*training)

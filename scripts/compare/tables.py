@@ -87,26 +87,20 @@ def missing_physics(part):
     rows = []
     for line in part["lines"]:
         rows.append([
-            line["name"], f"{line['single_first']} of {line['singles']}", f"{line['single_among']}", f"{line['single_alone']}",
-            f"{line['found']} of {line['concealed']}", f"{line['found_first']}", line["false"],
+            line["name"], f"{line['found']} of {line['concealed']}", line["false"],
+            f"{100 * line['found'] / (line['found'] + line['false']):.0f} %" if line["found"] + line["false"] else "–",
+            f"{line['found_first']}", f"{line['single_first']} of {line['singles']}", f"{line['single_among']}", f"{line['single_alone']}",
             f"{line['nulls_named']} of {line['nulls']}", f"{line['nulls_false']}", seconds(line["seconds"]),
         ])
     ours, *peers = part["lines"]
-    first = max(peers, key=lambda line: line["single_first"])
-    clean = min(peers, key=lambda line: line["false"])
-    most = max(peers, key=lambda line: line["found"])
-    score = lambda line: line["found"] - line["false"]
-    best = max(peers, key=score)
-    more_right = all(ours["found_first"] > line["found_first"] for line in peers)
-    fewer_false = all(ours["false"] < line["false"] for line in peers if line["found"])
-    remarks = []
-    for line in peers:
-        if line["found"] > ours["found"]:
-            remarks.append(f"{line['name']} names {line['found']} of the concealed effects, ours {ours['found']}, at "
-                           f"{line['false']} false names against {ours['false']}.")
-        if line["false"] < ours["false"]:
-            remarks.append(f"{line['name']} has {line['false']} false names, ours {ours['false']}, and finds {line['found']} "
-                           f"effects against {ours['found']}.")
+    both = [line for line in peers if ours["found"] > line["found"] and ours["false"] < line["false"]]
+    remarks = [
+        f"- {line['name']}: {line['found']} right and {line['false']} false against {ours['found']} and {ours['false']}."
+        for line in peers if line not in both
+    ]
+    balance = lambda line: line["found"] - line["false"]
+    best = max(peers, key=balance)
+    oracle = max(peers, key=lambda line: line["found_first"])
     return f"""## Missing physics
 
 {part['n_cases']} fresh cases of `prove --generate-only` (seed {part['seed']}): random muscles with one, two, three, no, or nameless effects
@@ -118,15 +112,14 @@ the very id. STLSQ's threshold is in percent of the deviation of the force; 1 % 
 added because typical effects lie below them. LASSO's penalty comes from {6} blocked folds. Time of peers: the regression alone, without building
 the columns ({seconds(part['building_s'])}), and LASSO's second row takes the folds of its first; ours: the whole process.
 
-{table(["", "one concealed: named first", "among the names", "alone", "concealed effects named", "within as many names as are concealed",
-        "false names", "nothing concealed: named something", "false names there", "time of a case"], rows)}
-{verdict(more_right and fewer_false, "more right names than any peer, and fewer false ones than any peer that finds something",
-         f"{ours['found_first']} right within as many names as are concealed against {max(line['found_first'] for line in peers)}, "
-         f"{ours['false']} false against {min((line['false'] for line in peers if line['found']), default=0)} of the cleanest peer")}
-Named first, best peer: {first['name']}, {first['single_first']} against {ours['single_first']}. Most effects named: {most['name']}, {most['found']}
-with {most['false']} false names. Fewest false names: {clean['name']}, {clean['false']} with {clean['found']} right. Best balance (right minus
-false): {best['name']}, {score(best)} against {score(ours)}.
+{table(["", "right names", "false names", "right of all", "right among as many as concealed", "one concealed: first",
+        "among the names", "alone", "none concealed: named some", "false there", "time of a case"], rows)}
+{verdict(len(both) == len(peers), "more right names and fewer false ones than every peer",
+         f"both against {len(both)} of {len(peers)}" + (", one of the two against" if remarks else ""))}
 {chr(10).join(remarks)}
+
+Right minus false: {balance(ours)}, of the best peer ({best['name']}) {balance(best)}. Someone who knew how many effects are concealed
+and took only as many names would have {ours['found_first']} right of ours, and {oracle['found_first']} of the best peer's ({oracle['name']}).
 
 {conditions(part)}
 """
