@@ -82,15 +82,17 @@ def figure(results):
         line = part["lines"][0]
         layers = "-".join(map(str, [3, *line["size"], 1]))
         sheet.head(f"Inverse network {layers}: to an RMSE of the pressure, in percent of its range",
-                   "seconds on a logarithmic axis; ours with its whole process, peers the fit alone")
+                   "seconds on a logarithmic axis; one start each; ours with its whole process, peers the fit alone")
         rows = []
-        for index, goal in enumerate(line["ours"]["to_goal"]):
+        for index, goal in enumerate(line["ours"][-1]["to_goal"]):
             rows.append((f"{goal['goal']:g} %: ours", [(goal["seconds"], "ours")], seconds(goal["seconds"])))
             for peer in line["peers"]:
                 entry = peer["to_goal"][index]
                 never = entry["seconds"] is None
                 value = peer["longest_s"] if never else entry["seconds"]
-                words = f"not in {seconds(value)}" if never else seconds(value)
+                words = seconds(value)
+                if never:
+                    words = f"not in {words}, {min(peer['best_percent']):.2g} % at best"
                 rows.append((f"MLPRegressor {peer['name']}", [(value, "peer")], words))
         sheet.bars(rows, log=True)
     if part := results.get("closed-loop"):

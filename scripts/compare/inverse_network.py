@@ -13,11 +13,14 @@ MUSCLE = ROOT / "configs/muscle-nominal.toml"
 BENCH = ROOT / "datasets/bench-nominal"
 RECORDINGS = ("isobaric-triangles", "isometric-ramps", "minor-loops", "length-steps")
 OURS = "pam-train-inverse"
+# As a peer is timed: one start, and its judging left out as far as it can be.
+ALIKE = f"{OURS}, one start, unjudged"
+VARIANTS = {OURS: [], ALIKE: ["--starts", 1, "--judge-points", 100]}
 SIZES = ((20,), (12, 12))
 # RMSE of the pressure on unseen points, in percent of its range.
 GOALS_PERCENT = (1.0, 0.3, 0.1, 0.03)
 N_POINTS, N_HELD = 2000, 20_000
-LBFGS_STEPS = (25, 50, 100, 200, 400, 800, 1600, 3200, 6400)
+LBFGS_STEPS = (25, 50, 100, 200, 400, 800, 1600, 3200, 6400, 12_800, 25_600, 51_200)
 
 
 class Points:
@@ -81,7 +84,7 @@ def ours_on(network, inputs):
 
 
 def adam(size, training, held, seed, budget_s):
-    """(seconds, error) along a training by adam; judging does not count."""
+    """(seconds, error) along a training by adam, judging left out; and whether it ended by itself."""
     from sklearn.neural_network import MLPRegressor
 
     network = MLPRegressor(hidden_layer_sizes=size, activation="tanh", solver="adam", alpha=0, random_state=seed)
@@ -93,7 +96,7 @@ def adam(size, training, held, seed, budget_s):
         if spent >= judge_at:
             track.append((spent, error_percent(network.predict(held[0]), held[1])))
             judge_at = spent * 1.05
-    return track
+    return track, False
 
 
 def lbfgs(size, training, held, seed, budget_s):
@@ -108,9 +111,11 @@ def lbfgs(size, training, held, seed, budget_s):
         network.fit(*training)
         seconds = time.perf_counter() - start
         track.append((seconds, error_percent(network.predict(held[0]), held[1])))
-        if seconds > budget_s / 2 or network.n_iter_ < steps:
+        if network.n_iter_ < steps:
+            return track, True
+        if seconds > budget_s / 2:
             break
-    return track
+    return track, False
 
 
 def first_below(track, goal):
@@ -134,41 +139,45 @@ def compare(programs, scratch, quick, seed):
     for size in SIZES:
         train = [programs / "pam-train-inverse", "--model", model_path, "--hidden", ",".join(map(str, size)),
                  "--out", inverse_path, "--quiet"]
-        ours, reached = {None: [], **{goal: [] for goal in GOALS_PERCENT}}, {}
+        goals = (None, *GOALS_PERCENT)
+        spent = {name: {goal: [] for goal in goals} for name in VARIANTS}
+        reached = {name: {goal: [] for goal in goals} for name in VARIANTS}
         tracks = {"adam": [], "lbfgs": []}
         for repetition in range(n_seeds):
-            for goal in ours:
-                for _ in range(3):
-                    # Judged on other points than it stops by: a little below the goal.
-                    aim = [] if goal is None else ["--goal-percent", 0.8 * goal]
-                    seconds, _ = run([*train, *aim, "--seed", seed + repetition], scratch, (0, 1))
-                    ours[goal].append(seconds)
-                answers = ours_on(json.loads(inverse_path.read_text()), held[0])
-                reached.setdefault(goal, []).append(error_percent(answers, held[1]))
+            for goal in goals:
+                # Judged on other points than it stops by: a little below the goal.
+                aim = [] if goal is None else ["--goal-percent", 0.8 * goal]
+                for name, options in VARIANTS.items():
+                    for _ in range(3):
+                        seconds, _ = run([*train, *options, *aim, "--seed", seed + repetition], scratch, (0, 1))
+                        spent[name][goal].append(seconds)
+                    answers = ours_on(json.loads(inverse_path.read_text()), held[0])
+                    reached[name][goal].append(error_percent(answers, held[1]))
             training = points.draw(N_POINTS, seed + repetition, design=True)
             for name, descend in (("adam", adam), ("lbfgs", lbfgs)):
                 say(f"inverse network: {size}, {name}, seed {repetition + 1}")
                 tracks[name].append(descend(size, training, held, seed + repetition, budget_s))
-        whole = median(ours[None])
-        line = {"size": size, "ours": {
-            "whole_s": whole, "error_percent": reached[None],
+        whole, final = median(spent[ALIKE][None]), median(reached[ALIKE][None])
+        line = {"size": size, "ours": [{
+            "name": name, "whole_s": median(spent[name][None]), "error_percent": reached[name][None],
             "to_goal": [
-                {"goal": goal, "seconds": median(ours[goal]), "error": max(reached[goal])} for goal in GOALS_PERCENT
+                {"goal": goal, "seconds": median(spent[name][goal]), "error": median(reached[name][goal])}
+                for goal in GOALS_PERCENT
             ],
-        }, "peers": []}
+        } for name in VARIANTS], "final": final, "peers": []}
         for name, runs in tracks.items():
             to_goal = []
-            for goal in [*GOALS_PERCENT, max(reached[None])]:
-                times = [first_below(track, goal) for track in runs]
+            for goal in (*GOALS_PERCENT, final):
+                times = [first_below(track, goal) for track, _ in runs]
                 # A run that never gets there counts as longer than all that do.
                 times = sorted(times, key=lambda seconds: np.inf if seconds is None else seconds)
                 middle = times[len(times) // 2]
                 to_goal.append({"goal": goal, "seconds": middle, "of": len(runs),
                                 "reached": sum(seconds is not None for seconds in times)})
             line["peers"].append({
-                "name": name, "to_goal": to_goal, "longest_s": max(track[-1][0] for track in runs),
-                "best_percent": [min(error for _, error in track) for track in runs],
-                "at_equal_time": [best_within(track, whole) for track in runs],
+                "name": name, "to_goal": to_goal, "longest_s": max(track[-1][0] for track, _ in runs), "ended": all(ended for _, ended in runs),
+                "best_percent": [min(error for _, error in track) for track, _ in runs],
+                "at_equal_time": [best_within(track, whole) for track, _ in runs],
             })
         lines.append(line)
     return {"n_points": N_POINTS, "n_held": len(held[1]), "budget_s": budget_s, "lines": lines}
