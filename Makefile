@@ -6,7 +6,12 @@ DATA := datasets/bench-nominal
 # Where cargo builds to: target, unless the user's environment or configuration says otherwise.
 BIN = $(shell $(CARGO) metadata --no-deps --offline --format-version 1 | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release
 
-.PHONY: all test check bench compare tables datasets recordings prove prove-real clean cargo-is-there
+# Where `make install` puts programs, manual pages and completions.
+PREFIX ?= /usr/local
+SHARE = $(DESTDIR)$(PREFIX)/share
+PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench
+
+.PHONY: all install test check bench compare tables datasets recordings prove prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -25,6 +30,20 @@ all: cargo-is-there
 	@echo "Report:    $(OUT)/report.html"
 	@echo "Figures:   $(OUT)/fit.svg, $(OUT)/inverse.svg, $(OUT)/lift.svg"
 	@echo "Artifacts: $(OUT)/model.json, $(OUT)/predicted.csv, $(OUT)/diagnosis.json, $(OUT)/inverse.json, $(OUT)/track.csv, $(OUT)/metrics.json"
+
+# The programs write their own manual pages and completions.
+install: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@mkdir -p "$(DESTDIR)$(PREFIX)/bin" "$(SHARE)/man/man1" "$(SHARE)/bash-completion/completions" \
+		"$(SHARE)/zsh/site-functions" "$(SHARE)/fish/vendor_completions.d"
+	@set -e; for program in $(PROGRAMS); do \
+		install -m 755 $(BIN)/$$program "$(DESTDIR)$(PREFIX)/bin/$$program"; \
+		$(BIN)/$$program --man >"$(SHARE)/man/man1/$$program.1"; \
+		$(BIN)/$$program --completions bash >"$(SHARE)/bash-completion/completions/$$program"; \
+		$(BIN)/$$program --completions zsh >"$(SHARE)/zsh/site-functions/_$$program"; \
+		$(BIN)/$$program --completions fish >"$(SHARE)/fish/vendor_completions.d/$$program.fish"; \
+	done
+	@echo "installed $(PROGRAMS) below $(DESTDIR)$(PREFIX)"
 
 test: cargo-is-there
 	@$(CARGO) test --locked --workspace

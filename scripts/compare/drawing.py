@@ -3,7 +3,7 @@
 import math
 from html import escape
 
-WIDTH, ROW, LABEL, VALUE = 860, 20, 270, 150
+WIDTH, ROW, LABEL, VALUE = 900, 20, 270, 190
 STYLE = """
 text{font:13px system-ui,sans-serif;fill:#1f2933}.title{font-size:16px;font-weight:600}.note{fill:#5b6770;font-size:12px}
 .ours{fill:#1668b8}.peer{fill:#9aa5b1}.false{fill:#d9822b}.axis{stroke:#c3cad1}

@@ -16,17 +16,19 @@ use pam_cli::RunArgs;
     after_help = "Example: the paper's lift and a robustness study\n  \
                   exo-track --config configs/lift.toml --model model.json --inverse inverse.json --out track.csv \
                   --metrics metrics.json --figure lift.svg --trials 10000 --trials-figure envelope.svg\n\n\
+                  Example: a commented configuration to change\n  \
+                  exo-track --example --out lift.toml\n\n\
                   Exit codes: 0 done and clean; 1 done, but the lift saturated, went slack or was given up; 2 input or \
                   usage."
 )]
 pub(crate) struct Args {
-    /// Configuration of the lift; see configs/lift.toml.
-    #[arg(long, value_name = "LIFT.toml")]
-    pub(crate) config: PathBuf,
+    /// Configuration of the lift; --example writes one.
+    #[arg(long, value_name = "LIFT.toml", required_unless_present = "example")]
+    pub(crate) config: Option<PathBuf>,
 
     /// Force model that the controller knows (pam-model/1).
-    #[arg(long, value_name = "MODEL.json")]
-    pub(crate) model: PathBuf,
+    #[arg(long, value_name = "MODEL.json", required_unless_present = "example")]
+    pub(crate) model: Option<PathBuf>,
 
     /// Inverse of the force model (pam-inverse/1); without it, the model is inverted by root finding.
     #[arg(long, value_name = "INVERSE.json")]
@@ -37,7 +39,7 @@ pub(crate) struct Args {
     pub(crate) plant: Option<PathBuf>,
 
     /// Every signal of the lift to write (CSV); - is standard output.
-    #[arg(long, value_name = "TRACK.csv", required_unless_present = "check")]
+    #[arg(long, value_name = "TRACK.csv", required_unless_present_any = ["check", "example"])]
     pub(crate) out: Option<PathBuf>,
 
     /// Errors of the lift to write (exo-metrics/1).
@@ -59,6 +61,10 @@ pub(crate) struct Args {
     /// Also lift without each of the controller's options, and print what each is worth.
     #[arg(long)]
     pub(crate) compare_options: bool,
+
+    /// Write a commented configuration to --out, or else to standard output, and stop.
+    #[arg(long, conflicts_with_all = ["config", "model", "inverse", "plant", "metrics", "figure", "trials", "compare_options"])]
+    pub(crate) example: bool,
 
     #[command(flatten)]
     pub(crate) run: RunArgs,

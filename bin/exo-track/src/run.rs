@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use pam_cli::{Console, Output, Verdict, commit_all};
+use pam_cli::{Console, Output, Verdict, commit_all, write_example};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool, sha256_hex};
 use pam_core::effects::AugmentedModel;
 use pam_exo::artifact::{ArmMetrics, MetricsArtifact, SCHEMA, TrialMetrics, paper};
@@ -21,14 +21,23 @@ use crate::args::Args;
 use crate::network::Network;
 use crate::{figure, tables, track};
 
+/// What `--example` writes.
+const EXAMPLE: &str = include_str!("../../../configs/lift.toml");
+
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let console = args.run.start()?;
+    if args.example {
+        write_example(EXAMPLE, args.out.as_deref(), &args.run, &console)?;
+        return Ok(Verdict::Accepted);
+    }
+    let config_path = args.config.as_deref().context("--config is missing")?;
+    let model_path = args.model.as_deref().context("--model is missing")?;
     let outputs = Outputs::open(args)?;
-    let (config, plan, config_input) = read_config(&args.config)?;
-    let (model, model_input) = read_model(&args.model, InputRole::Model)?;
+    let (config, plan, config_input) = read_config(config_path)?;
+    let (model, model_input) = read_model(model_path, InputRole::Model)?;
     let mut inputs = vec![config_input, model_input];
     let plant = args.plant.as_deref().map(|path| read_model(path, InputRole::Plant)).transpose()?;
-    let force = of_the_muscle(&console, &args.model, &model);
+    let force = of_the_muscle(&console, model_path, &model);
     let inverse = read_inverse(args, &plan, &force, &mut inputs)?;
     let plant_artifact = plant.as_ref().map_or(&model, |(artifact, _)| artifact);
     let plant_force = match (&args.plant, &plant) {
@@ -37,10 +46,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     };
     inputs.extend(plant.iter().map(|(_, input)| input.clone()));
     let simulation = Simulation { plan: &plan, model: &force, inverse: inverse.as_ref(), plant: &plant_force };
-    check_reach(&simulation).with_context(|| args.config.display().to_string())?;
+    check_reach(&simulation).with_context(|| config_path.display().to_string())?;
     let uncertainty = match args.trials {
         Some(_) if plan.spreads.model_parameters => {
-            let path = args.plant.as_ref().unwrap_or(&args.model);
+            let path = args.plant.as_deref().unwrap_or(model_path);
             Some(Uncertainty::new(plant_artifact).with_context(|| path.display().to_string())?)
         }
         _ => None,
@@ -56,7 +65,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let [left, right] = outcomes.map(|outcome| ArmMetrics::of(&outcome));
     console.text(tables::errors(&left.errors, &right.errors, &paper()));
     if args.compare_options {
-        console.text(tables::options(&compare_options(&simulation, args.run.seed)));
+        let progress = console.progress("comparing options", 1);
+        let variants = compare_options(&simulation, args.run.seed, |done, all| progress.set_of(done, all));
+        drop(progress);
+        console.text(tables::options(&variants));
     }
     let study = args.trials.map(|n_trials| {
         let progress = console.progress("lifting", n_trials);
@@ -92,11 +104,11 @@ struct Outputs {
 impl Outputs {
     /// Opens every output before anything is computed.
     fn open(args: &Args) -> anyhow::Result<Self> {
-        let inputs = [Some(&args.config), Some(&args.model), args.inverse.as_ref(), args.plant.as_ref()];
+        let inputs = [&args.config, &args.model, &args.inverse, &args.plant];
         let open = |path: &Option<PathBuf>| {
             path.as_deref()
                 .filter(|_| !args.run.check)
-                .map(|path| Output::open(path)?.apart_from(inputs.iter().flatten()))
+                .map(|path| Output::open(path)?.apart_from(inputs.into_iter().flatten()))
                 .transpose()
         };
         Ok(Self {

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/model.json");
+/// The published schema.
+const SCHEMA: &str = include_str!("../../../crates/core/schemas/exo-metrics-1.json");
 const CONFIG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../configs/lift.toml");
 
 /// A folder with the configuration, changed by replacing text, and the model.
@@ -94,12 +96,31 @@ fn a_lift_writes_track_metrics_and_figures_that_are_the_same_again() {
     assert_eq!(track.lines().count(), 502, "a header and 5 s at 100 Hz");
     assert!(track.lines().all(|line| line.split(',').count() == 46));
     let metrics: serde_json::Value = serde_json::from_str(metrics).unwrap();
-    assert_eq!(metrics["schema"], "exo-metrics/1");
+    let printed = Command::new(env!("CARGO_BIN_EXE_exo-track")).arg("--schema").output().unwrap().stdout;
+    assert!(printed == SCHEMA.as_bytes(), "the published schema is stale; run scripts/schemas");
+    jsonschema::validate(&serde_json::from_str(SCHEMA).unwrap(), &metrics).unwrap();
     for arm in ["left", "right"] {
         let angle = &metrics[arm]["errors"]["angle_rad"];
         assert!(angle["max"].as_f64().unwrap() <= 0.00175 && angle["rmse"].as_f64().unwrap() <= 0.00048);
     }
     assert_eq!(metrics["trials"]["n_trials"], 64);
+}
+
+#[test]
+fn the_example_is_a_configuration_that_is_accepted_unchanged() {
+    let folder = folder(&[]);
+    let example = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_exo-track"));
+        let output = command.current_dir(folder.path()).arg("--example").args(more).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    let printed = example(&[]);
+    assert!(printed.starts_with(b"# "), "it is commented");
+    example(&["--out", "lift.toml"]);
+    assert_eq!(std::fs::read(folder.path().join("lift.toml")).unwrap(), printed);
+    let output = run(folder.path(), &["--check"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 #[test]

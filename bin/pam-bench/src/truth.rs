@@ -21,6 +21,7 @@ const SCHEMA: &str = "pam-bench-truth/1";
 #[serde(deny_unknown_fields)]
 pub(crate) struct Truth {
     /// `pam-bench-truth/1`.
+    #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
     /// Program that wrote it.
     tool: Tool,

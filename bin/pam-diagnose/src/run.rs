@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
-use pam_cli::{Console, Output, commit_all};
+use pam_cli::{Console, Output, commit_all, read_recordings};
 use pam_core::artifact::diagnosis::Verdict;
 use pam_core::artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
-use pam_core::recording::{Recording, read_recording};
 use pam_diagnosis::artifact::{Agreement, Head};
 use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose};
 use pam_diagnosis::traces::traces;
@@ -57,12 +56,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     let to_stdout = outputs.paths().any(|path| path.as_os_str() == "-");
 
     let (model, model_sha256) = ModelArtifact::read(model_path)?;
-    let estimation = read_all(args, &console, &args.logs)?;
-    let holdout = read_all(args, &console, &args.holdout)?;
+    let estimation = read_recordings(&args.logs, &args.read.options(), &console)?;
+    let holdout = read_recordings(&args.holdout, &args.read.options(), &console)?;
     let mut hashes =
         vec![Input { path: model_path.display().to_string(), sha256: model_sha256, role: InputRole::Model }];
-    hashes.extend(estimation.iter().map(|recording| input(recording, InputRole::Estimation)));
-    hashes.extend(holdout.iter().map(|recording| input(recording, InputRole::Validation)));
+    hashes.extend(estimation.iter().map(|recording| Input::recording(recording, InputRole::Estimation)));
+    hashes.extend(holdout.iter().map(|recording| Input::recording(recording, InputRole::Validation)));
     let request =
         Request { estimation, holdout, model, config: args.config(), accept_implausible: args.accept_implausible };
     if args.run.check {
@@ -149,38 +148,4 @@ impl Outputs {
 fn line_ended(mut json: Vec<u8>) -> Vec<u8> {
     json.push(b'\n');
     json
-}
-
-fn read_all(args: &Args, console: &Console, paths: &[PathBuf]) -> anyhow::Result<Vec<Recording>> {
-    let options = args.read.options();
-    let mut recordings = Vec::new();
-    let mut notes: Vec<(String, Vec<String>)> = Vec::new();
-    for path in paths {
-        let recording = read_recording(path, &options)?;
-        let mut said = recording.repairs.notes();
-        if !recording.ignored_columns.is_empty() {
-            said.push(format!("not used: {}", recording.ignored_columns.join(", ")));
-        }
-        for words in said {
-            match notes.iter_mut().find(|(known, _)| *known == words) {
-                Some((_, paths)) => paths.push(recording.path.clone()),
-                None => notes.push((words, vec![recording.path.clone()])),
-            }
-        }
-        recordings.push(recording);
-    }
-    // Files of one logger need the same repairs: say so once.
-    for (words, paths) in notes {
-        let others = match paths.len() {
-            1 => String::new(),
-            2 => " and another".to_owned(),
-            n => format!(" and {} others", n - 1),
-        };
-        console.note(format!("{}{others}: {words}", paths[0]));
-    }
-    Ok(recordings)
-}
-
-fn input(recording: &Recording, role: InputRole) -> Input {
-    Input { path: recording.path.clone(), sha256: recording.sha256.clone(), role }
 }

@@ -18,20 +18,22 @@ use pam_core::force::{Form, Parameter};
     after_help = "Example: fit two recordings, judge the model on a third\n  \
                   pam-identify run1.csv run2.csv --muscle muscle.toml --holdout run3.csv --out model.json --figure \
                   fit.svg\n\n\
+                  Example: a commented muscle file to fill in\n  \
+                  pam-identify --example --out muscle.toml\n\n\
                   Exit codes: 0 done and accepted; 1 done and rejected (did not converge, or above --max-rmse-n); 2 \
                   input or usage."
 )]
 pub(crate) struct Args {
     /// Recordings to fit; - is standard input.
-    #[arg(value_name = "LOG", required = true)]
+    #[arg(value_name = "LOG", required_unless_present = "example")]
     pub(crate) logs: Vec<PathBuf>,
 
-    /// Muscle file: dimensions as measured, and which of them to fit; see configs/muscle-nominal.toml.
-    #[arg(long, value_name = "M.toml")]
-    pub(crate) muscle: PathBuf,
+    /// Muscle file: dimensions as measured, and which of them to fit; --example writes one.
+    #[arg(long, value_name = "M.toml", required_unless_present = "example")]
+    pub(crate) muscle: Option<PathBuf>,
 
     /// Model to write (pam-model/1); - is standard output.
-    #[arg(long, value_name = "MODEL.json", required_unless_present = "check")]
+    #[arg(long, value_name = "MODEL.json", required_unless_present_any = ["check", "example"])]
     pub(crate) out: Option<PathBuf>,
 
     /// Recording to hold out and judge the model on; may be repeated.
@@ -104,6 +106,10 @@ pub(crate) struct Args {
     /// Go on where ranges or correlations say that an instrument or the muscle file is wrong.
     #[arg(long)]
     pub(crate) accept_implausible: bool,
+
+    /// Write a commented muscle file to --out, or else to standard output, and stop.
+    #[arg(long, conflicts_with_all = ["logs", "muscle", "holdout", "figure"])]
+    pub(crate) example: bool,
 
     #[command(flatten)]
     pub(crate) read: ReadArgs,

@@ -2,20 +2,28 @@
 
 use std::path::Path;
 
-use anyhow::ensure;
-use pam_cli::{Console, Output, Verdict, commit_all};
+use anyhow::{Context as _, ensure};
+use pam_cli::{Console, Output, Verdict, commit_all, read_recordings, write_example};
 use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
-use pam_core::recording::{Recording, read_recording};
+use pam_core::recording::Recording;
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 
 use crate::args::{Args, FormArg};
 use crate::{figure, tables};
 
+/// What `--example` writes.
+const EXAMPLE: &str = include_str!("../../../configs/muscle-nominal.toml");
+
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let console = args.run.start()?;
+    if args.example {
+        write_example(EXAMPLE, args.out.as_deref(), &args.run, &console)?;
+        return Ok(Verdict::Accepted);
+    }
+    let muscle_path = args.muscle.as_deref().context("--muscle is missing")?;
     if let Some(limit) = args.max_rmse_n {
         ensure!(limit > 0.0, "--max-rmse-n {limit} is not positive");
     }
@@ -34,17 +42,17 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
             held_out.display()
         );
     }
-    let inputs = || args.logs.iter().chain(&args.holdout).chain([&args.muscle]);
+    let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.muscle);
     let open = |path: &Path| Output::open(path)?.apart_from(inputs());
     let out = args.out.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
     let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
 
-    let (muscle, muscle_input) = read_muscle(&args.muscle)?;
-    let estimation = read_all(args, &console, &args.logs)?;
-    let validation = read_all(args, &console, &args.holdout)?;
+    let (muscle, muscle_input) = read_muscle(muscle_path)?;
+    let estimation = read_recordings(&args.logs, &args.read.options(), &console)?;
+    let validation = read_recordings(&args.holdout, &args.read.options(), &console)?;
     let mut hashes = vec![muscle_input];
-    hashes.extend(estimation.iter().map(|recording| input(recording, InputRole::Estimation)));
-    hashes.extend(validation.iter().map(|recording| input(recording, InputRole::Validation)));
+    hashes.extend(estimation.iter().map(|recording| Input::recording(recording, InputRole::Estimation)));
+    hashes.extend(validation.iter().map(|recording| Input::recording(recording, InputRole::Validation)));
 
     let checked = check(request(args, args.form.form(), muscle.clone(), estimation, validation))?;
     console.text(tables::gate(checked.gates()));
@@ -53,7 +61,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         return Ok(Verdict::Accepted);
     }
     let config = checked.config();
-    let found = checked.identify()?;
+    let progress = console.progress("searching", u64::from(args.starts) * u64::from(args.iterations));
+    let found = checked.identify_observed(&|| progress.advance(1))?;
+    drop(progress);
     let tool = Tool { name: "pam-identify".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
     let artifact = found.artifact(tool, hashes, config, args.run.seed);
 
@@ -155,9 +165,9 @@ fn compare_forms(
         "--compare-forms reads the recordings twice, and standard input can be read once only; name a file"
     );
     let other = if args.form == FormArg::Corrected { Form::AsPrinted } else { Form::Corrected };
-    let quiet = Console::new(true);
-    let estimation = read_all(args, &quiet, &args.logs)?;
-    let validation = read_all(args, &quiet, &args.holdout)?;
+    let quiet = Console::new(true, args.run.format);
+    let estimation = read_recordings(&args.logs, &args.read.options(), &quiet)?;
+    let validation = read_recordings(&args.holdout, &args.read.options(), &quiet)?;
     let checked = check(request(args, other, muscle.clone(), estimation, validation))?;
     let config = checked.config();
     let tool = artifact.tool.clone();
@@ -170,38 +180,4 @@ fn read_muscle(path: &Path) -> anyhow::Result<(MuscleFile, Input)> {
     // Read anew for the digest alone: a muscle file is a few hundred bytes.
     let sha256 = sha256_hex(&std::fs::read(path)?);
     Ok((muscle, Input { path: path.display().to_string(), sha256, role: InputRole::Muscle }))
-}
-
-fn read_all(args: &Args, console: &Console, paths: &[std::path::PathBuf]) -> anyhow::Result<Vec<Recording>> {
-    let options = args.read.options();
-    let mut recordings = Vec::new();
-    let mut notes: Vec<(String, Vec<String>)> = Vec::new();
-    for path in paths {
-        let recording = read_recording(path, &options)?;
-        let mut said = recording.repairs.notes();
-        if !recording.ignored_columns.is_empty() {
-            said.push(format!("not used: {}", recording.ignored_columns.join(", ")));
-        }
-        for words in said {
-            match notes.iter_mut().find(|(known, _)| *known == words) {
-                Some((_, paths)) => paths.push(recording.path.clone()),
-                None => notes.push((words, vec![recording.path.clone()])),
-            }
-        }
-        recordings.push(recording);
-    }
-    // Files of one logger need the same repairs: say so once.
-    for (words, paths) in notes {
-        let others = match paths.len() {
-            1 => String::new(),
-            2 => " and another".to_owned(),
-            n => format!(" and {} others", n - 1),
-        };
-        console.note(format!("{}{others}: {words}", paths[0]));
-    }
-    Ok(recordings)
-}
-
-fn input(recording: &Recording, role: InputRole) -> Input {
-    Input { path: recording.path.clone(), sha256: recording.sha256.clone(), role }
 }

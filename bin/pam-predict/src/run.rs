@@ -4,7 +4,7 @@ use anyhow::{Context as _, ensure};
 use pam_cli::{Console, Output, Verdict};
 use pam_core::artifact::ModelArtifact;
 use pam_core::effects::{AugmentedModel, Kind};
-use pam_core::recording::{ReadOptions, read_recording};
+use pam_core::recording::ReadOptions;
 use pam_identification::evaluate::evaluate_augmented;
 use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare};
 use pam_identification::prepare::Prepared;
@@ -20,7 +20,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     };
     let (artifact, _) = ModelArtifact::read(&args.model)?;
     let options = ReadOptions { force_required: false, ..args.read.options() };
-    let recording = read_recording(&args.log, &options)?;
+    let recording = pam_cli::read_recording(&args.log, &options, &console)?;
     for note in recording.repairs.notes() {
         console.warn(format!("{}: {note}", recording.path));
     }

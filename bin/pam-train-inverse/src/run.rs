@@ -4,9 +4,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
-use pam_cli::{Console, Output, Verdict, commit_all};
+use pam_cli::{Console, Output, Verdict, commit_all, read_recordings};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool};
-use pam_core::recording::{ReadOptions, Recording, read_recording};
+use pam_core::recording::ReadOptions;
 use pam_inverse_model::report::{Outcome, Prepared};
 
 use crate::args::{ActivationArg, Args};
@@ -28,12 +28,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         console.note(format!("left out, as they are not the muscle's: {}", beside.join(", ")));
     }
     let mut hashes = vec![Input { path: args.model.display().to_string(), sha256, role: InputRole::Model }];
-    let recordings = read_all(args, &console)?;
-    hashes.extend(recordings.iter().map(|recording| Input {
-        path: recording.path.clone(),
-        sha256: recording.sha256.clone(),
-        role: InputRole::Training,
-    }));
+    let recordings =
+        read_recordings(&args.logs, &ReadOptions { force_required: false, ..args.read.options() }, &console)?;
+    hashes.extend(recordings.iter().map(|recording| Input::recording(recording, InputRole::Training)));
     let config = args.config();
     let seed = args.run.seed;
     let prepared =
@@ -91,19 +88,6 @@ fn check_numbers(args: &Args) -> anyhow::Result<()> {
     ensure!(args.activation != ActivationArg::Linear, "--activation linear makes no network; take tanh or sigmoid");
     ensure!(args.points > 0 || !args.logs.is_empty(), "--points 0 leaves nothing to train at; name a recording");
     Ok(())
-}
-
-fn read_all(args: &Args, console: &Console) -> anyhow::Result<Vec<Recording>> {
-    let options = ReadOptions { force_required: false, ..args.read.options() };
-    let mut recordings = Vec::new();
-    for path in &args.logs {
-        let recording = read_recording(path, &options)?;
-        for note in recording.repairs.notes() {
-            console.warn(format!("{}: {note}", recording.path));
-        }
-        recordings.push(recording);
-    }
-    Ok(recordings)
 }
 
 /// What the network is compared with, over points that were judged.

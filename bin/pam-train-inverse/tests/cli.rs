@@ -9,6 +9,9 @@ use model::{Change, folder_with, model_json};
 use pam_core::artifact::InverseArtifact;
 use pam_inverse_model::InverseNetwork;
 
+/// The published schema.
+const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-inverse-1.json");
+
 /// Options that make a training short.
 const SHORT: [&str; 6] = ["--points", "900", "--starts", "1", "--judge-points", "2000"];
 
@@ -72,7 +75,8 @@ fn the_artifact_obeys_its_schema() {
     let folder = folder_with(&model_json(Change::None));
     let schema = pam_train_inverse(folder.path(), &["--schema"]);
     assert_eq!(schema.status.code(), Some(0));
-    let schema: serde_json::Value = serde_json::from_slice(&schema.stdout).unwrap();
+    assert!(schema.stdout == SCHEMA.as_bytes(), "the published schema is stale; run scripts/schemas");
+    let schema: serde_json::Value = serde_json::from_str(SCHEMA).unwrap();
     let artifact = pam_train_inverse(folder.path(), &[&["--model", "model.json", "--out", "-"], &SHORT[..]].concat());
     let artifact: serde_json::Value = serde_json::from_slice(&artifact.stdout).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();

@@ -1,7 +1,8 @@
 //! Exit codes: 0 accepted, 1 finished but rejected, 2 input or usage.
 
-use std::io::Write as _;
 use std::process::ExitCode;
+
+use crate::message::{Format, Message, Said};
 
 /// What a program that ran to its end thinks of the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,19 +14,19 @@ pub enum Verdict {
 }
 
 /// Exit code of a run; an error becomes exactly one line on standard error, `error: ` and the chain of
-/// reasons joined by `: `, and exit code 2.
-pub fn exit_code(result: anyhow::Result<Verdict>) -> ExitCode {
+/// reasons joined by `: `, or its like in JSON, and exit code 2.
+pub fn exit_code(result: anyhow::Result<Verdict>, format: Format) -> ExitCode {
     match result {
         Ok(Verdict::Accepted) => ExitCode::SUCCESS,
         Ok(Verdict::Rejected) => ExitCode::from(1),
-        Err(error) => usage_error(&one_line(&error)),
+        Err(error) => usage_error(&one_line(&error), format),
     }
 }
 
-/// Prints `error: message` and gives exit code 2.
-pub(crate) fn usage_error(message: &str) -> ExitCode {
+/// Prints the error and gives exit code 2.
+pub(crate) fn usage_error(message: &str, format: Format) -> ExitCode {
     // Where standard error is closed too, the exit code has to do.
-    let _ = writeln!(std::io::stderr().lock(), "error: {}", flatten(message));
+    Message::Error(Said::new(message)).write(format);
     ExitCode::from(2)
 }
 

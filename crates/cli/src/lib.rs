@@ -20,27 +20,35 @@
 //! }
 //! ```
 //!
-//! In reading order: [`main`](main()) and exit codes, options ([`RunArgs`], [`ReadArgs`]), what goes to standard error
-//! ([`Console`], [`Progress`]), what goes into files ([`Output`]), and what happens on Ctrl-C.
+//! In reading order: [`main`](main()) and exit codes, options ([`RunArgs`], [`ReadArgs`],
+//! [`write_example`]), what goes to standard
+//! error ([`Console`], [`Progress`], [`Message`]), what goes into files ([`Output`]), and what happens on Ctrl-C.
 
+mod about;
 mod console;
+mod example;
 mod exit;
 mod interrupt;
+mod message;
 mod nearest;
 mod output;
 mod output_error;
 mod program;
 mod read_args;
+mod reading;
 mod run_args;
 mod target;
 mod temporary;
 
 pub use console::{Console, Progress};
+pub use example::write_example;
 pub use exit::{Verdict, exit_code};
 pub use interrupt::start;
+pub use message::{Drawn, Format, Message, Said, Step};
 pub use nearest::nearest;
 pub use output::{Output, commit_all, finish_all, write_file};
 pub use output_error::OutputError;
-pub use program::{main, main_with_schema, print_schema};
+pub use program::{main, main_with_schema};
 pub use read_args::ReadArgs;
+pub use reading::{read_recording, read_recordings};
 pub use run_args::RunArgs;

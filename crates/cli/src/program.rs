@@ -3,11 +3,13 @@
 use std::io::Write as _;
 use std::process::ExitCode;
 
+use clap::Parser;
 use clap::error::ErrorKind;
-use clap::{Arg, ArgAction, ArgMatches, Parser};
 use schemars::JsonSchema;
 
+use crate::about::{self, Schema};
 use crate::exit::usage_error;
+use crate::message::Format;
 use crate::{OutputError, Verdict, exit_code, interrupt};
 
 /// A whole `main`: parses the arguments, runs, and turns the result into an exit code.
@@ -15,57 +17,38 @@ use crate::{OutputError, Verdict, exit_code, interrupt};
 /// Mistakes on the command line are one line on standard error, like every other error; `--help` and
 /// `--version` go to standard output.
 pub fn main<Args: Parser>(run: impl FnOnce(&Args) -> anyhow::Result<Verdict>) -> ExitCode {
-    program(Args::command(), run, None)
+    program(run, None)
 }
 
-/// Like [`main`](main()), for a program whose artifact is an `Artifact`: adds `--schema`, which prints the
-/// artifact's JSON schema and stops. It is accepted without the arguments that are required otherwise.
+/// Like [`main`](main()), for a program whose artifact is an `Artifact`: `--schema` prints the artifact's JSON
+/// schema and stops. It is accepted without the arguments that are required otherwise.
 pub fn main_with_schema<Args: Parser, Artifact: JsonSchema>(
     run: impl FnOnce(&Args) -> anyhow::Result<Verdict>,
 ) -> ExitCode {
-    let flag = Arg::new("schema")
-        .long("schema")
-        .action(ArgAction::SetTrue)
-        .exclusive(true)
-        .help("Print the JSON schema of the artifact and stop");
-    program(Args::command().arg(flag), run, Some(print_schema::<Artifact>))
+    program(run, Some(about::schema::<Artifact>))
 }
 
-/// Writes the JSON schema of `Artifact` to standard output.
-///
-/// # Errors
-/// [`OutputError`] where standard output cannot be written.
-pub fn print_schema<Artifact: JsonSchema>() -> Result<(), OutputError> {
-    let text = format!("{:#}\n", schemars::schema_for!(Artifact).to_value());
-    print(&text)
-}
-
-fn print(text: &str) -> Result<(), OutputError> {
+fn print(text: &[u8]) -> Result<(), OutputError> {
     let mut stdout = std::io::stdout().lock();
-    stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-        .map_err(|reason| OutputError::from_io("-".as_ref(), reason))
+    stdout.write_all(text).and_then(|()| stdout.flush()).map_err(|reason| OutputError::from_io("-".as_ref(), reason))
 }
 
-fn program<Args: Parser>(
-    command: clap::Command,
-    run: impl FnOnce(&Args) -> anyhow::Result<Verdict>,
-    schema: Option<fn() -> Result<(), OutputError>>,
-) -> ExitCode {
+fn program<Args: Parser>(run: impl FnOnce(&Args) -> anyhow::Result<Verdict>, artifact: Option<Schema>) -> ExitCode {
     interrupt::start();
-    let parse = |matches: ArgMatches| match schema {
-        Some(print) if matches.get_flag("schema") => Ok(Err(print)),
-        _ => Args::from_arg_matches(&matches).map(Ok),
-    };
-    match command.try_get_matches().and_then(parse) {
-        Ok(Ok(args)) => exit_code(run(&args)),
-        Ok(Err(print)) => exit_code(print().map(|()| Verdict::Accepted).map_err(Into::into)),
+    let command = || about::with_options(Args::command(), artifact.is_some());
+    let format = Format::of_command_line();
+    let printed = |text: &[u8]| exit_code(print(text).map(|()| Verdict::Accepted).map_err(Into::into), format);
+    let parsed = command().try_get_matches().and_then(|matches| match about::asked_for(&matches, command, artifact) {
+        Some(text) => Ok(Err(text)),
+        None => Args::from_arg_matches(&matches).map(Ok),
+    });
+    match parsed {
+        Ok(Ok(args)) => exit_code(run(&args), format),
+        Ok(Err(text)) => printed(&text),
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
-            let text = error.render().to_string();
-            exit_code(print(&text).map(|()| Verdict::Accepted).map_err(Into::into))
+            printed(error.render().to_string().as_bytes())
         }
-        Err(error) => usage_error(&without_usage(&error.render().to_string())),
+        Err(error) => usage_error(&without_usage(&error.render().to_string()), format),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use anyhow::Context as _;
 
-use crate::{Console, interrupt};
+use crate::{Console, Format, interrupt};
 
 /// Options that every program takes; flatten it into the program's own.
 #[derive(Debug, Clone, clap::Args)]
@@ -10,6 +10,9 @@ pub struct RunArgs {
     /// Say nothing on standard error but errors.
     #[arg(long, short)]
     pub quiet: bool,
+    /// What standard error is written as: text for people, or one JSON object per line for machines.
+    #[arg(long, value_name = "FORMAT", default_value = "text")]
+    pub format: Format,
     /// Seed of every random draw.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -35,6 +38,6 @@ impl RunArgs {
                 .build_global()
                 .with_context(|| format!("cannot start {} threads", self.threads))?;
         }
-        Ok(Console::new(self.quiet))
+        Ok(Console::new(self.quiet, self.format))
     }
 }

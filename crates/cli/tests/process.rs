@@ -10,6 +10,10 @@ use std::time::Duration;
 
 use clap::Parser;
 use pam_cli::{Output, Verdict};
+use serde_json::json;
+
+/// Schema of the lines for machines, as published.
+const MESSAGES: &str = include_str!("../../core/schemas/pam-messages-1.json");
 
 /// Arguments of the child.
 #[derive(Debug, Parser)]
@@ -38,6 +42,15 @@ fn run(args: &Args) -> anyhow::Result<Verdict> {
     match args.task.as_str() {
         "reject" => return Ok(Verdict::Rejected),
         "fail" => anyhow::bail!("first line\nsecond line"),
+        "refuse" => anyhow::bail!("{}:3:14: no number", args.out.display()),
+        "slow" => {
+            console.text(" a   b\n───────\n 1   2\n");
+            let bar = console.progress("waiting", 4);
+            for _ in 0..3 {
+                std::thread::sleep(Duration::from_millis(600));
+                bar.advance(1);
+            }
+        }
         "threads" => output.commit(rayon_threads())?,
         "hang" => {
             output.write_all(&vec![b'x'; 1 << 20])?;
@@ -80,6 +93,62 @@ fn exit_codes_and_notes() {
     assert_eq!(finish(&["threads", "--quiet", "--threads", "3"]), (Some(0), "3".to_owned(), String::new()));
     let (code, stdout, stderr) = finish(&["write", "--sed", "4"]);
     assert_eq!((code, stdout.as_str(), stderr.lines().count()), (Some(2), "", 1), "{stderr}");
+}
+
+/// Standard error of a run with `--format json`, line by line; every line obeys the published schema.
+fn json_lines(arguments: &[&str], code: i32) -> Vec<serde_json::Value> {
+    let schema = serde_json::from_str(MESSAGES).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let (status, _, stderr) = finish(arguments);
+    assert_eq!(status, Some(code), "{stderr}");
+    let lines = stderr.lines().map(|line| {
+        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        let errors: Vec<String> = validator.iter_errors(&line).map(|error| error.to_string()).collect();
+        assert!(errors.is_empty(), "{line}: {errors:?}");
+        line
+    });
+    lines.collect()
+}
+
+fn machines_get_json_lines() {
+    let note = json!({"level": "note", "message": "a note on two lines"});
+    let warning = json!({"level": "warning", "message": "a warning"});
+    assert_eq!(json_lines(&["reject", "--format", "json"], 1), [note.clone(), warning.clone()]);
+    assert!(json_lines(&["reject", "--format=json", "--quiet"], 1).is_empty());
+
+    let lines = json_lines(&["slow", "--format", "json"], 0);
+    assert_eq!(lines[2], json!({"level": "table", "message": " a   b\n───────\n 1   2"}));
+    // Once a second has passed, and where it stopped.
+    let (last, earlier) = lines[3..].split_last().unwrap();
+    let of = |key: &str| last[key].clone();
+    assert_eq!(
+        [of("level"), of("task"), of("done"), of("total")],
+        [json!("progress"), json!("waiting"), json!(3), json!(4)]
+    );
+    assert!(!earlier.is_empty() && earlier[0]["seconds_left"].as_f64().unwrap() > 0.0, "{lines:?}");
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.json");
+    let path = path.to_str().unwrap();
+    let error =
+        json!({"level": "error", "message": format!("{path}:3:14: no number"), "path": path, "line": 3, "column": 14});
+    assert_eq!(json_lines(&["refuse", "--format", "json", "--out", path, "--quiet"], 2), [error]);
+    // A command line that cannot be understood says so in the form that it asks for.
+    let lines = json_lines(&["write", "--sed", "4", "--format", "json"], 2);
+    assert_eq!((lines.len(), &lines[0]["level"]), (1, &json!("error")));
+    let (_, schema, _) = finish(&["--schema=messages"]);
+    assert!(schema == MESSAGES, "the published schema is stale; run scripts/schemas");
+}
+
+fn completions_and_the_manual_page_are_printed() {
+    for (shell, word) in [("bash", "complete -F"), ("zsh", "#compdef"), ("fish", "complete -c")] {
+        let (code, script, stderr) = finish(&["--completions", shell]);
+        assert_eq!((code, stderr.as_str()), (Some(0), ""));
+        assert!(script.contains(word) && script.contains("threads") && script.contains("pam-cli"), "{script}");
+    }
+    let (code, page, _) = finish(&["--man"]);
+    assert_eq!(code, Some(0));
+    assert!(page.contains(".SH SYNOPSIS") && page.contains("Seed of every random draw"), "{page}");
 }
 
 fn schema_help_and_version_need_no_other_argument() {
@@ -134,6 +203,8 @@ fn main() -> ExitCode {
         return pam_cli::main_with_schema::<Args, Artifact>(run);
     }
     exit_codes_and_notes();
+    machines_get_json_lines();
+    completions_and_the_manual_page_are_printed();
     schema_help_and_version_need_no_other_argument();
     a_closed_pipe_is_one_line_and_code_2();
     a_full_standard_output_is_one_line_and_code_2();

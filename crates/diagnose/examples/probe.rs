@@ -28,6 +28,7 @@ fn main() {
         space: &space,
         muscle: &model.geometry,
         strand_modulus_pa: model.strand_modulus_pa,
+        only: None,
     };
     println!("{} instants, {} counted, {} blocks", track.n(), track.n_counted(), track.blocks.len());
     let limits =

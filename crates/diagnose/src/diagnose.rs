@@ -123,6 +123,7 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
         space: &space,
         muscle: &model.geometry,
         strand_modulus_pa: model.strand_modulus_pa,
+        only: None,
     };
     let limits = Limits {
         max_effects: config.max_effects,
@@ -301,8 +302,7 @@ fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) -> Vec<Region
     for (index, guess) in state.guesses.iter().enumerate() {
         let mut others = state.guesses.clone();
         others.remove(index);
-        let near = &state.fit.x[..setting.space.free.len()];
-        let Some(rest) = setting.fit(others, near, &state.model) else { continue };
+        let Some(rest) = setting.fit_near(others, state) else { continue };
         let before = setting.residuals_n(&rest);
         let excess: Vec<f64> =
             before.iter().zip(&after).map(|(before, after)| before * before - after * after).collect();

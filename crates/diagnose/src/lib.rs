@@ -21,7 +21,6 @@ mod regions;
 mod rehearsal;
 pub mod search;
 pub mod sheet;
-mod shift;
 pub mod state;
 mod steps;
 pub mod structure;

@@ -155,13 +155,14 @@ fn separation(
     explanations: &[Explanation],
 ) -> Separation {
     let rehearsal = Rehearsal::of(takes, reach);
-    let ground = Ground { track: &rehearsal.track, columns };
+    let ground = Ground { track: &rehearsal.track, columns, only: None };
     let setting = Setting {
         track: &rehearsal.track,
         columns,
         space: setting.space,
         muscle: setting.muscle,
         strand_modulus_pa: setting.strand_modulus_pa,
+        only: None,
     };
     let runs: Vec<Run> = explanations
         .par_iter()
@@ -230,7 +231,6 @@ pub(crate) fn next_experiment(
     domain: &Domain,
 ) -> Option<(NextExperiment, Setpoints)> {
     let best = &found.best.state;
-    let near = &best.fit.x[..setting.space.free.len()];
     match verdict {
         Verdict::Consistent => None,
         Verdict::Unexplained => {
@@ -247,7 +247,7 @@ pub(crate) fn next_experiment(
             for rival in rivals.take(MOST_RIVALS) {
                 let mut guesses = best.guesses.clone();
                 guesses[index] = rival.guess.clone();
-                if let Some(state) = setting.fit(guesses, near, &best.model) {
+                if let Some(state) = setting.fit_near(guesses, best) {
                     explanations.push(Explanation { id: rival.guess.id(), state });
                 }
             }
@@ -260,7 +260,7 @@ pub(crate) fn next_experiment(
             let index = (0..best.guesses.len()).max_by(|left, right| evidence(*left).total_cmp(&evidence(*right)))?;
             let mut guesses = best.guesses.clone();
             let effect = guesses.remove(index).effect;
-            let without = setting.fit(guesses, near, &best.model)?;
+            let without = setting.fit_near(guesses, best)?;
             let explanations = [
                 Explanation { id: effect.page().id, state: best.clone() },
                 Explanation { id: "nothing", state: without },

@@ -43,6 +43,7 @@ impl Rehearsal {
                 recording_of_block: Vec::new(),
                 fold_of_block: Vec::new(),
                 counted: Vec::new(),
+                sampled: Vec::new(),
             },
             stands_for_s: Vec::new(),
         };
@@ -282,7 +283,8 @@ pub(crate) mod tests {
             let guesses: Vec<Guess> = effects.iter().map(|(id, shape, _)| given.guess(id, shape)).collect();
             let mut weights = given.columns.weights(&parameters).to_vec();
             weights.extend(effects.iter().flat_map(|(_, _, amplitudes)| amplitudes.iter()));
-            let sheet = Ground { track: &given.track, columns: &given.columns }.sheet(&guesses, &given.model);
+            let sheet =
+                Ground { track: &given.track, columns: &given.columns, only: None }.sheet(&guesses, &given.model);
             for (instant, row) in given.track.instants.iter_mut().zip(sheet.columns.chunks_exact(sheet.width)) {
                 instant.force_n = row.iter().zip(&weights).map(|(column, weight)| column * weight).sum();
                 instant.moment.force_n = instant.force_n;
@@ -301,6 +303,7 @@ pub(crate) mod tests {
                 space: &self.space,
                 muscle: &self.muscle,
                 strand_modulus_pa: 3e9,
+                only: None,
             }
         }
     }

@@ -1,14 +1,12 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 
-use std::collections::BTreeSet;
-
 use pam_core::effects::Seen;
 
 use crate::coordinates::Coordinates;
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
 use crate::structure::{Feature, Remainder, Structure, features};
-use crate::trial::{self, Trial};
+use crate::trial::{self, Shapes, Trial};
 
 /// Limits of a search.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,6 +70,10 @@ const LEAST_OF_ALL: f64 = 0.03;
 /// lost elsewhere.
 const LEAST_LOG_RATIO: f64 = 1.0;
 
+/// The same beyond which a further effect is taken however small its share of the whole mismatch, if it changes what eq. 11
+/// sees: one that only adds a column takes up a little of whatever is left.
+const STRONG_LOG_RATIO: f64 = 3.0;
+
 /// Searches.
 pub fn search(
     setting: &Setting<'_>,
@@ -94,16 +96,18 @@ pub fn search(
     let mut best = base.clone();
     let mut first = Vec::new();
     let mut rounds = Vec::new();
-    let mut promising = BTreeSet::new();
+    let mut promising = Shapes::new();
+    let mut known = Shapes::new();
     for round in 0..limits.max_effects {
-        let trials = trial::among(setting, &best.state, &best.held_out, &seen, &|id| {
+        let trials = trial::among(setting, &best.state, &best.held_out, &seen, &known, &|id| {
             !limits.excluded.iter().any(|excluded| excluded == id)
         });
         if round == 0 {
             first.clone_from(&trials);
         }
         rounds.push(trials.clone());
-        promising.extend(promise(&trials));
+        known = promise(&trials).collect();
+        promising.extend(known.clone());
         for trial in &trials {
             floor_square = floor_square.min(trial.held_out.mean_square());
         }
@@ -118,7 +122,7 @@ pub fn search(
         floor_square = floor_square.min(best.held_out.mean_square());
     }
     let whole = base.held_out.mean_square() - floor_square;
-    let best = without_stand_ins(setting, best, &features, whole);
+    let best = polished(setting, without_stand_ins(setting, best, &features, whole))?;
     let mut taken = Vec::new();
     for index in 0..best.state.guesses.len() {
         let Some((without, rivals)) = without(setting, &best, index, &seen, &promising) else { continue };
@@ -131,10 +135,13 @@ pub fn search(
     Some(Found { base, best, taken, first, rounds, coordinates, features, floor_square, left })
 }
 
-/// Ids of the trials that come anywhere near the best: what may stand in the place of what was taken.
-fn promise(trials: &[Trial]) -> impl Iterator<Item = &'static str> {
+/// The trials that come anywhere near the best: what may stand in the place of what was taken.
+fn promise(trials: &[Trial]) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
     let best = trials.first().map_or(0.0, |trial| trial.log_ratio);
-    trials.iter().filter(move |trial| trial.log_ratio > (0.15 * best).max(0.3)).map(|trial| trial.guess.id())
+    trials
+        .iter()
+        .filter(move |trial| trial.log_ratio > (0.15 * best).max(0.3))
+        .map(|trial| (trial.guess.id(), trial.guess.shape.clone()))
 }
 
 /// Whether a trial gains more than chance and more than what does not matter.
@@ -144,6 +151,13 @@ fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits:
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
     let whole = base.held_out.mean_square() - floor_square;
+    if !best.state.guesses.is_empty()
+        && !trial.guess.only_adds()
+        && trial.log_ratio > STRONG_LOG_RATIO
+        && gained > LEAST_SHARE * mismatch
+    {
+        return gained > limits.matters_above_n.map_or(0.1 * full_floor, |_| matters);
+    }
     gained > LEAST_SHARE * mismatch
         && gained > (LEAST_OF_ALL * whole).min(0.5 * full_floor)
         && gained > matters
@@ -175,13 +189,25 @@ fn upper_tail(t: f64) -> f64 {
 
 /// Takes a trial: joint fit, shapes of everything refined once more.
 fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Option<Judged> {
-    let (_, guess) = trial::refine(setting, &best.state, &chosen.guess, chosen.mean_square, 1);
-    let mut state = trial::with(setting, &best.state, &guess)?;
+    let sampled = setting.sampled();
+    let thin = sampled.fit_near(best.state.guesses.clone(), &best.state)?;
+    let (_, guess) = trial::refine(&sampled, &thin, &chosen.guess, chosen.mean_square, 1);
+    let mut state = trial::with(&sampled, &thin, &guess)?;
     if state.guesses.len() > 1 {
-        state = refine_all(setting, state)?;
+        state = refine_all(&sampled, state)?;
     }
     // What effects take of the base follows the new parameters.
-    let state = setting.fit(state.guesses.clone(), &state.fit.x[..setting.space.free.len()], &state.model)?;
+    let state = setting.fit_near(state.guesses.clone(), &state)?;
+    let held_out = setting.hold_out(&state)?;
+    Some(Judged { state, held_out })
+}
+
+/// What was taken, its shapes refined on every instant.
+fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
+    if best.state.guesses.iter().all(|guess| guess.shape.is_empty()) {
+        return Some(best);
+    }
+    let state = refine_all(setting, best.state)?;
     let held_out = setting.hold_out(&state)?;
     Some(Judged { state, held_out })
 }
@@ -193,12 +219,12 @@ fn refine_all(setting: &Setting<'_>, state: State) -> Option<State> {
         let guess = state.guesses[index].clone();
         let mut others = state.guesses.clone();
         others.remove(index);
-        let rest = setting.fit(others, &state.fit.x[..setting.space.free.len()], &state.model)?;
+        let rest = setting.fit_near(others, &state)?;
         let cost = trial::mean_square(setting, &rest, &guess)?;
         let (_, guess) = trial::refine(setting, &rest, &guess, cost, 1);
         let mut guesses = rest.guesses.clone();
         guesses.insert(index, guess);
-        state = setting.fit(guesses, &state.fit.x[..setting.space.free.len()], &state.model)?;
+        state = setting.fit_near(guesses, &state)?;
     }
     Some(state)
 }
@@ -207,6 +233,9 @@ fn refine_all(setting: &Setting<'_>, state: State) -> Option<State> {
 const STRUCTURED: f64 = 0.2;
 /// Share of its gain that an effect must keep beside such structure.
 const KEPT: f64 = 0.4;
+
+/// Share of the whole mismatch beyond which an effect does not only stand in for something else.
+const STANDS_FOR_ITSELF: f64 = 0.5;
 
 /// Lets go of effects that only stand in for something without a name: where structure over one coordinate is left, an effect
 /// that gains little beside a free function of that coordinate was the nearest name, and the wrong one.
@@ -227,12 +256,14 @@ fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], 
         let stand_in = (0..best.state.guesses.len()).find_map(|index| {
             let mut others = best.state.guesses.clone();
             others.remove(index);
-            let near = &best.state.fit.x[..setting.space.free.len()];
-            let state = setting.fit(others, near, &best.state.model)?;
+            let state = setting.fit_near(others, &best.state)?;
             let held_out = setting.hold_out(&state)?;
             let gained = held_out.mean_square() - best.held_out.mean_square();
             let without = Remainder::of(setting, &state).structure(&[feature])?.held_out.mean_square();
-            (without - beside < KEPT * gained).then_some(Judged { state, held_out })
+            // What explains most of it, or lives in that very coordinate, stands for itself.
+            let lives_there = best.state.guesses[index].effect.page().coordinate == feature.coordinate;
+            (!lives_there && gained < STANDS_FOR_ITSELF * whole && without - beside < KEPT * gained)
+                .then_some(Judged { state, held_out })
         });
         match stand_in {
             Some(rest) => best = rest,
@@ -247,19 +278,20 @@ fn without(
     best: &Judged,
     index: usize,
     seen: &Seen,
-    promising: &BTreeSet<&'static str>,
+    promising: &Shapes,
 ) -> Option<(Judged, Vec<Trial>)> {
     let mut others = best.state.guesses.clone();
     others.remove(index);
-    let state = setting.fit(others, &best.state.fit.x[..setting.space.free.len()], &best.state.model)?;
+    let state = setting.fit_near(others, &best.state)?;
     let held_out = setting.hold_out(&state)?;
     let judged = Judged { state, held_out };
-    let rivals = trial::among(setting, &judged.state, &judged.held_out, seen, &|id| promising.contains(id));
+    let rivals =
+        trial::among(setting, &judged.state, &judged.held_out, seen, promising, &|id| promising.contains_key(id));
     Some((judged, rivals))
 }
 
 /// Looks at every effect that was taken once more: another one in its place, or none.
-fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &BTreeSet<&'static str>) -> Judged {
+fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &Shapes) -> Judged {
     let mut best = best;
     for index in 0..best.state.guesses.len() {
         let Some((rest, rivals)) = without(setting, &best, index, seen, promising) else { continue };

@@ -6,8 +6,8 @@ use pam_core::force::columns::{FRICTION, ForceColumns, N_COLUMNS};
 use rayon::prelude::*;
 
 use crate::hypothesis::{Guess, n_amplitudes};
-use crate::shift::shifted;
 use crate::track::Track;
+use pam_core::shift::shifted;
 
 /// Rows of a hypothesis.
 #[derive(Debug, Clone)]
@@ -29,6 +29,8 @@ pub struct Ground<'a> {
     pub track: &'a Track,
     /// Columns of eq. 11.
     pub columns: &'a ForceColumns,
+    /// Instants whose columns are wanted, the others' are zero; none where all are.
+    pub only: Option<&'a [bool]>,
 }
 
 impl Ground<'_> {
@@ -57,7 +59,7 @@ impl Ground<'_> {
         model: &ForceModel,
         width: usize,
     ) -> Sheet {
-        let instants = &self.track.instants[range];
+        let instants = &self.track.instants[range.clone()];
         let mut delays_s = [0.0; 2];
         for guess in guesses.iter().filter(|guess| guess.effect.role() == Role::Shift) {
             let more_s = guess.effect.delays_s(&guess.shape);
@@ -67,7 +69,8 @@ impl Ground<'_> {
         let mut memories = start(guesses, model);
         let mut columns = vec![0.0; seen.len() * width];
         let mut base = Vec::with_capacity(seen.len());
-        for (now, row) in seen.iter_mut().zip(columns.chunks_exact_mut(width)) {
+        for ((now, row), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width)).zip(range) {
+            let wanted = self.only.is_none_or(|only| only[at]);
             let mut slide = now.direction;
             for (guess, memory) in guesses.iter().zip(&mut memories) {
                 match guess.effect.role() {
@@ -76,11 +79,17 @@ impl Ground<'_> {
                     Role::Shift | Role::Pulls | Role::Reads => {}
                 }
             }
-            row[..N_COLUMNS].copy_from_slice(&self.columns.row(now.pressure_pa, now.length_m, 1.0));
-            for friction in &mut row[FRICTION..N_COLUMNS] {
-                *friction *= slide;
+            if wanted {
+                row[..N_COLUMNS].copy_from_slice(&self.columns.row(now.pressure_pa, now.length_m, 1.0));
+                for friction in &mut row[FRICTION..N_COLUMNS] {
+                    *friction *= slide;
+                }
             }
-            let here = Base::of(model, now.pressure_pa, now.length_m);
+            // Between the wanted instants what the base was at the last one will do.
+            let here = match base.last() {
+                Some(&last) if !wanted => last,
+                _ => Base::of(model, now.pressure_pa, now.length_m),
+            };
             let mut at = N_COLUMNS;
             for (guess, memory) in guesses.iter().zip(&mut memories) {
                 let n = guess.amplitudes().len();

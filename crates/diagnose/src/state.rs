@@ -28,6 +28,8 @@ pub struct Setting<'a> {
     pub muscle: &'a Muscle,
     /// Modulus that the contact between strands is computed with, in Pa.
     pub strand_modulus_pa: f64,
+    /// Instants that fits look at; none where all that count do.
+    pub only: Option<&'a [bool]>,
 }
 
 /// A hypothesis with its joint fit.
@@ -47,9 +49,19 @@ pub struct State {
     pub cut: Vec<bool>,
 }
 
-impl Setting<'_> {
+impl<'a> Setting<'a> {
+    /// The same over fewer instants, to find shapes with.
+    pub fn sampled(&self) -> Self {
+        Self { only: Some(&self.track.sampled), ..*self }
+    }
+
+    /// Instants that count.
+    fn counted(&self) -> &[bool] {
+        self.only.unwrap_or(&self.track.counted)
+    }
+
     fn ground(&self) -> Ground<'_> {
-        Ground { track: self.track, columns: self.columns }
+        Ground { track: self.track, columns: self.columns, only: self.only }
     }
 
     fn joint<'b>(&'b self, ranges: &'b [(f64, f64)]) -> Joint<'b> {
@@ -63,6 +75,23 @@ impl Setting<'_> {
     /// Fits `guesses` and the base; `near` is where the search starts and `model` what effects take of the base. None where
     /// the rows do not determine a fit.
     pub fn fit(&self, guesses: Vec<Guess>, near: &[f64], model: &ForceModel) -> Option<State> {
+        self.fit_from(guesses, near, model, None)
+    }
+
+    /// Fits `guesses` and the base, starting from `state`.
+    pub fn fit_near(&self, guesses: Vec<Guess>, state: &State) -> Option<State> {
+        let was_cut = state.guesses.iter().any(|guess| guess.effect.role() == Role::Reads);
+        let near = &state.fit.x[..self.space.free.len()];
+        self.fit_from(guesses, near, &state.model, was_cut.then_some(&state.cut))
+    }
+
+    fn fit_from(
+        &self,
+        guesses: Vec<Guess>,
+        near: &[f64],
+        model: &ForceModel,
+        was_cut: Option<&Vec<bool>>,
+    ) -> Option<State> {
         let sheet = self.ground().sheet(&guesses, model);
         let limits = ranges(&guesses);
         let force_n: Vec<f64> = self.track.instants.iter().map(|instant| instant.force_n).collect();
@@ -70,7 +99,9 @@ impl Setting<'_> {
         let mut cut = vec![false; self.track.n()];
         let mut reference = self.columns.weights(model.parameters()).to_vec();
         reference.resize(sheet.width, 0.0);
-        if let Some(reads) = reads {
+        if let (Some(_), Some(was_cut)) = (reads, was_cut) {
+            cut.clone_from(was_cut);
+        } else if let Some(reads) = reads {
             // Where the load cell stands near what it reads of a slack muscle.
             let highest_n = force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let mut memory = reads.effect.start(self.muscle, &reads.shape);
@@ -90,7 +121,7 @@ impl Setting<'_> {
                     (&columns, &forces)
                 }
             };
-            let normal = Normal::new(self.track, rows, sheet.width, measured, &self.track.counted, reference.clone());
+            let normal = Normal::new(self.track, rows, sheet.width, measured, self.counted(), reference.clone());
             let rows = normal.extend(self.track, &[], 0);
             let fit = self.joint(&limits).fit_all(&rows, &start)?;
             let model = self.model(&fit);
@@ -99,7 +130,7 @@ impl Setting<'_> {
                 Some(reads) => {
                     let mut memory = reads.effect.start(self.muscle, &reads.shape);
                     let mut changed = 0;
-                    for (at, cut) in cut.iter_mut().enumerate() {
+                    for (at, cut) in cut.iter_mut().enumerate().filter(|(at, _)| self.counted()[*at]) {
                         let row = &sheet.columns[at * sheet.width..(at + 1) * sheet.width];
                         let force_n: f64 = row.iter().zip(&fit.weights).map(|(column, weight)| column * weight).sum();
                         let now = memory.cuts(force_n);
@@ -119,7 +150,7 @@ impl Setting<'_> {
         // The last mask has not settled: fit once more under it.
         let reads = reads?;
         let (rows, measured) = self.cut_off(&sheet, &force_n, &cut, reads);
-        let normal = Normal::new(self.track, &rows, sheet.width, &measured, &self.track.counted, reference);
+        let normal = Normal::new(self.track, &rows, sheet.width, &measured, self.counted(), reference);
         let fit = self.joint(&limits).fit_all(&normal.extend(self.track, &[], 0), &start)?;
         let model = self.model(&fit);
         Some(State { guesses, sheet, normal, fit, model, cut })

@@ -18,6 +18,11 @@ const MOST_INSTANTS: usize = 300_000;
 /// Blocks that the recordings together are cut into, about.
 const BLOCKS: usize = 32;
 
+/// Instants that a search for the best shape looks at, at least, where there are as many.
+const LEAST_SAMPLED: usize = 2500;
+/// It looks at one instant in so many, at most.
+const MOST_SPARSE: usize = 4;
+
 /// Groups of blocks that are held out in turn.
 pub const FOLDS: usize = 8;
 
@@ -36,6 +41,8 @@ pub struct Track {
     pub fold_of_block: Vec<usize>,
     /// Whether an instant counts: its direction is settled and its values are finite.
     pub counted: Vec<bool>,
+    /// Those of them that a search for the best shape looks at.
+    pub sampled: Vec<bool>,
 }
 
 impl Track {
@@ -76,6 +83,7 @@ impl Track {
             recording_of_block: Vec::new(),
             fold_of_block: Vec::new(),
             counted: Vec::new(),
+            sampled: Vec::new(),
         };
         for (index, instants) in walked.into_iter().enumerate() {
             let first = track.instants.len();
@@ -95,6 +103,8 @@ impl Track {
             .iter()
             .map(|instant| instant.settled && instant.force_n.is_finite() && instant.moment.pressure_pa.is_finite())
             .collect();
+        let stride = (track.n_counted() / LEAST_SAMPLED).clamp(1, MOST_SPARSE);
+        track.sampled = track.counted.iter().enumerate().map(|(at, &counted)| counted && at % stride == 0).collect();
         Ok(track)
     }
 

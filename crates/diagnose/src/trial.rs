@@ -1,5 +1,7 @@
 //! Candidates tried on top of a state.
 
+use std::collections::BTreeMap;
+
 use pam_core::effects::{CATALOGUE, Effect, Kind, Seen};
 use rayon::prelude::*;
 
@@ -24,15 +26,23 @@ pub struct Trial {
 /// Candidates whose shapes are refined before they are compared.
 const REFINED: usize = 5;
 
+/// Share of the mean square that a candidate must explain of what it was fitted to before it is judged on what it was not.
+const LEAST_GAIN: f64 = 1e-3;
+
 /// Share of its evidence that an event keeps: it has been looked for at every instant of every recording.
 const EVENT_CHARGE: f64 = 0.8;
 
-/// Tries every effect of the catalogue that `state` does not have and that `takes` lets through by its id; best first.
+/// Shapes that were best when a candidate was last looked at, by its id.
+pub type Shapes = BTreeMap<&'static str, Vec<f64>>;
+
+/// Tries every effect of the catalogue that `state` does not have and that `takes` lets through by its id; best first. A
+/// candidate in `known` starts from the shape there, the others from all that the catalogue has for them.
 pub fn among(
     setting: &Setting<'_>,
     state: &State,
     before: &HeldOut,
     seen: &Seen,
+    known: &Shapes,
     takes: &(dyn Fn(&str) -> bool + Sync),
 ) -> Vec<Trial> {
     let candidates: Vec<&'static dyn Effect> = CATALOGUE
@@ -47,19 +57,27 @@ pub fn among(
         .iter()
         .enumerate()
         .flat_map(|(index, &effect)| {
-            let shapes =
-                if effect.kind() == Kind::Event { steps::shapes(setting, state) } else { effect.first_shapes(seen) };
+            let shapes = match known.get(effect.page().id) {
+                _ if effect.kind() == Kind::Event => steps::shapes(setting, state),
+                Some(shape) => vec![shape.clone()],
+                None => effect.first_shapes(seen),
+            };
             shapes.into_iter().map(move |shape| (index, Guess { effect, shape }))
         })
         .collect();
     let residuals_n = setting.residuals_n(state);
+    // Shapes are found on some of the instants; what an effect is worth is judged on all.
+    let sampled = setting.sampled();
+    let Some(thin) = sampled.fit_near(state.guesses.clone(), state) else {
+        return Vec::new();
+    };
     let costs: Vec<Option<f64>> = jobs
         .par_iter()
         .map(|(_, guess)| {
             if guess.effect.kind() != Kind::Event {
-                return mean_square(setting, state, guess);
+                return mean_square(&sampled, &thin, guess);
             }
-            let fit = setting.fit_more(state, guess)?;
+            let fit = sampled.fit_more(&thin, guess)?;
             let step_n = fit.amplitudes.last()?;
             steps::is_sudden(setting, &residuals_n, &guess.shape, *step_n).then_some(fit.mean_square)
         })
@@ -79,13 +97,19 @@ pub fn among(
         .enumerate()
         .map(
             |(rank, (cost, guess))| {
-                if rank < REFINED { refine(setting, state, guess, *cost, 1) } else { (*cost, guess.clone()) }
+                if rank < REFINED { refine(&sampled, &thin, guess, *cost, 1) } else { (*cost, guess.clone()) }
             },
         )
         .collect();
     let mut trials: Vec<Trial> = refined
         .into_par_iter()
         .filter_map(|(mean_square, guess)| {
+            if mean_square > (1.0 - LEAST_GAIN) * thin.fit.mean_square {
+                return Some(Trial { guess, mean_square, held_out: before.clone(), log_ratio: 0.0 });
+            }
+            if is_pressed(setting, state, &guess)? {
+                return None;
+            }
             let held_out = hold_out(setting, state, &guess)?;
             let charge = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
             let log_ratio = charge * before.log_ratio(&held_out);
@@ -94,6 +118,21 @@ pub fn among(
         .collect();
     trials.sort_by(|left, right| right.log_ratio.total_cmp(&left.log_ratio));
     trials
+}
+
+/// Whether an amplitude presses against the largest that physics has for it: the data want something else of that shape.
+fn is_pressed(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<bool> {
+    let amplitudes = guess.amplitudes();
+    if amplitudes.is_empty() {
+        return Some(false);
+    }
+    let fit = if guess.only_adds() { setting.fit_more(state, guess)? } else { with(setting, state, guess)?.fit };
+    let own = &fit.amplitudes[fit.amplitudes.len() - amplitudes.len()..];
+    Some(own.iter().zip(amplitudes).any(|(value, amplitude)| {
+        let (low, high) = amplitude.range;
+        let near = 1e-3 * (high - low);
+        *value > high - near || (low < 0.0 && *value < low + near)
+    }))
 }
 
 /// Mean square of the joint fit with one more guess.
@@ -118,7 +157,7 @@ pub fn hold_out(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<H
 pub fn with(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<State> {
     let mut guesses = state.guesses.clone();
     guesses.push(guess.clone());
-    setting.fit(guesses, &state.fit.x[..setting.space.free.len()], &state.model)
+    setting.fit_near(guesses, state)
 }
 
 /// Better values of the shape parameters of `guess` on top of `state`, one after the other, `sweeps` times; and the mean

@@ -67,7 +67,7 @@ pub fn shape_errors(setting: &Setting<'_>, state: &State, index: usize, correlat
     let cost = |shape: &[f64]| -> Option<f64> {
         let mut guesses = state.guesses.clone();
         guesses[index].shape = shape.to_vec();
-        setting.fit(guesses, &state.fit.x[..setting.space.free.len()], &state.model).map(|state| state.fit.mean_square)
+        setting.fit_near(guesses, state).map(|state| state.fit.mean_square)
     };
     guess
         .effect

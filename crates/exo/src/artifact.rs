@@ -15,8 +15,10 @@ pub const SCHEMA: &str = "exo-metrics/1";
 
 /// Errors of a lift and of its trials.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct MetricsArtifact {
     /// `exo-metrics/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -38,6 +40,7 @@ pub struct MetricsArtifact {
 
 /// One arm.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct ArmMetrics {
     /// Errors.
     pub errors: TrackingErrors,
@@ -51,6 +54,7 @@ pub struct ArmMetrics {
 
 /// A robustness study; of each trial the worse arm counts.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct TrialMetrics {
     /// Trials run.
     pub n_trials: u64,
@@ -70,6 +74,7 @@ pub struct TrialMetrics {
 
 /// Quantiles over trials.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Quantiles {
     /// Median.
     pub p50: f64,

@@ -87,12 +87,24 @@ fn scaled(model: &AugmentedModel, parameters: &[Parameter], factor: f64) -> Augm
     model.on(ForceModel::new(base.muscle(), base.strand_modulus_pa(), base.form(), BaseParameters { theta }))
 }
 
-/// Lifts with every variant of the controller; an option that the configuration leaves off has no row.
-pub fn compare_options(simulation: &Simulation<'_>, seed: u64) -> Vec<Variant> {
+/// Lifts with every variant of the controller; an option that the configuration leaves off has no row. `observe` is
+/// told how many of how many figures are done.
+pub fn compare_options(simulation: &Simulation<'_>, seed: u64, mut observe: impl FnMut(u64, u64)) -> Vec<Variant> {
     let cases = cases(simulation);
-    variants(simulation)
+    let variants = variants(simulation);
+    let n_figures = (variants.len() * CASES.len()) as u64;
+    let mut n_done = 0;
+    variants
         .into_iter()
-        .map(|(name, plan)| Variant { name, cases: cases.each_ref().map(|case| errors(simulation, &plan, case, seed)) })
+        .map(|(name, plan)| {
+            let cases = cases.each_ref().map(|case| {
+                let errors = errors(simulation, &plan, case, seed);
+                n_done += 1;
+                observe(n_done, n_figures);
+                errors
+            });
+            Variant { name, cases }
+        })
         .collect()
 }
 

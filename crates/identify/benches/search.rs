@@ -73,7 +73,7 @@ fn search_of_four_starts(bencher: Bencher<'_, '_>) {
     let condensed = condense(&setting.prepared, &setting.columns, 1, None).expect("samples in memory");
     let problem =
         ForceProblem { summary: &condensed.total, columns: &setting.columns, space: &setting.space, steps: &[] };
-    bencher.bench_local(|| search(black_box(&problem), &FitOptions::default()));
+    bencher.bench_local(|| search(black_box(&problem), &FitOptions::default(), &|| {}));
 }
 
 /// The one pass over the rows.

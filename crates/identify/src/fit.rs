@@ -60,8 +60,9 @@ pub struct Fit {
     pub starts: Vec<Start>,
 }
 
-/// Searches the space of `problem`. Starts run in parallel, each with its own streams.
-pub fn search(problem: &ForceProblem<'_>, options: &FitOptions) -> Fit {
+/// Searches the space of `problem`. Starts run in parallel, each with its own streams; `observe` is called after every
+/// move of a swarm.
+pub fn search(problem: &ForceProblem<'_>, options: &FitOptions, observe: &(dyn Fn() + Sync)) -> Fit {
     let axes = problem.round_axes(&vec![0.5; problem.n_parameters()]);
     let starts: Vec<Start> = (0..options.n_starts.max(1) as u64)
         .into_par_iter()
@@ -77,7 +78,10 @@ pub fn search(problem: &ForceProblem<'_>, options: &FitOptions) -> Fit {
                 axes.as_ref(),
                 &swarm_options,
                 &mut |x| problem.mean_square(x),
-                &mut |_, _| ControlFlow::Continue(()),
+                &mut |_, _| {
+                    observe();
+                    ControlFlow::Continue(())
+                },
             );
             let polished = options.polish.then(|| descend(problem, &swarm.best));
             Start { swarm, polished }

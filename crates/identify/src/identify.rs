@@ -179,7 +179,15 @@ impl Checked {
     ///
     /// # Errors
     /// [`IdentifyError`] names the recording and the remedy.
-    pub fn identify(mut self) -> Result<Identified, IdentifyError> {
+    pub fn identify(self) -> Result<Identified, IdentifyError> {
+        self.identify_observed(&|| {})
+    }
+
+    /// As [`Checked::identify`]; `observe` is called after every move of a swarm, swarms times moves altogether.
+    ///
+    /// # Errors
+    /// As [`Checked::identify`].
+    pub fn identify_observed(mut self, observe: &(dyn Fn() + Sync)) -> Result<Identified, IdentifyError> {
         let validation = self.gates.split_off(self.n_estimation);
         let from_noise = thresholds(&self.gates, &self.muscle.muscle);
         let thresholds = Thresholds {
@@ -201,6 +209,7 @@ impl Checked {
         let fit = search(
             &ForceProblem { summary: &condensed.total, columns: &columns, space: &space, steps: &[] },
             &self.options,
+            observe,
         );
         let found = self.settle(&estimation, columns.clone(), condensed.clone(), &space, fit, largest_n_per_m)?;
         let problem = ForceProblem {

@@ -63,7 +63,7 @@ fn every_seed_ends_at_the_optimum() {
     let results: Vec<(f64, f64)> = (1..=SEEDS)
         .into_par_iter()
         .map(|seed| {
-            let fit = search(&problem, &FitOptions { n_starts: 1, seed, ..FitOptions::default() });
+            let fit = search(&problem, &FitOptions { n_starts: 1, seed, ..FitOptions::default() }, &|| {});
             (fit.starts[0].swarm.best_cost / optimum - 1.0, fit.mean_square / optimum - 1.0)
         })
         .collect();
@@ -89,10 +89,10 @@ fn the_result_has_the_same_bytes_on_one_thread_and_on_three() {
         pool.install(|| {
             let (condensed, columns, space) = shipped();
             let problem = ForceProblem { summary: &condensed.total, columns: &columns, space: &space, steps: &[] };
-            search(&problem, &FitOptions::default()).x
+            search(&problem, &FitOptions::default(), &|| {}).x
         })
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one, three);
-    assert_eq!(one, search(&problem, &FitOptions::default()).x);
+    assert_eq!(one, search(&problem, &FitOptions::default(), &|| {}).x);
 }

@@ -16,6 +16,7 @@ pub const SCHEMA: &str = "pam-diagnosis/1";
 #[serde(deny_unknown_fields)]
 pub struct DiagnosisArtifact {
     /// `pam-diagnosis/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,

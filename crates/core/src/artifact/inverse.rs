@@ -29,6 +29,7 @@ pub const MAX_WIDTH: usize = 64;
 #[serde(deny_unknown_fields)]
 pub struct InverseArtifact {
     /// `pam-inverse/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,

@@ -19,6 +19,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::recording::Recording;
+
 /// Program that wrote an artifact.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -39,6 +41,13 @@ pub struct Input {
     pub sha256: String,
     /// What it served as.
     pub role: InputRole,
+}
+
+impl Input {
+    /// A recording and what it served as.
+    pub fn recording(recording: &Recording, role: InputRole) -> Self {
+        Self { path: recording.path.clone(), sha256: recording.sha256.clone(), role }
+    }
 }
 
 /// What a file served as.

@@ -21,6 +21,7 @@ pub const SCHEMA: &str = "pam-model/1";
 #[serde(deny_unknown_fields)]
 pub struct ModelArtifact {
     /// `pam-model/1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,

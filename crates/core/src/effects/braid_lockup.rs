@@ -13,7 +13,7 @@ use crate::muscle::Muscle;
 const SHARES: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
 static SHAPE: &[Shape] = &[
-    Shape { name: "lock_contraction", unit: "1", range: (0.01, 0.5), grid: &[0.08, 0.12, 0.16, 0.2, 0.24, 0.28] },
+    Shape { name: "lock_contraction", unit: "1", range: (0.1, 0.5), grid: &[0.12, 0.16, 0.2, 0.24, 0.28] },
     Shape { name: "onset_contraction", unit: "1", range: (1e-3, 0.05), grid: &[0.004, 0.015] },
 ];
 

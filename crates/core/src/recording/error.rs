@@ -82,6 +82,52 @@ pub enum ReadErrorKind {
         /// What to do.
         remedy: &'static str,
     },
+    /// A format of recordings that is known, and not read.
+    #[error("this is {found}, which is not read; {remedy}")]
+    NotRead {
+        /// What it is.
+        found: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A MATLAB file that contradicts itself or ends early.
+    #[error("the MATLAB file is damaged or cut off ({reason}); copy it anew, or save it anew with save -v7")]
+    DamagedMat {
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// Compressed data that grows beyond what a recording can be.
+    #[error("the compressed data grows beyond {limit} bytes, which no recording of this size does; save it anew")]
+    ExpandsTooFar {
+        /// Bytes that it may grow to.
+        limit: u64,
+    },
+    /// A channel is missing, and a variable is an object that only MATLAB understands.
+    #[error(
+        "variable \"{name}\" is a {class} object, which only MATLAB reads; save its numbers, for a timeseries: \
+         t = {name}.Time; x = {name}.Data; save('log.mat', 't', 'x', '-v7')"
+    )]
+    MatObject {
+        /// Name of the variable.
+        name: String,
+        /// Its class.
+        class: String,
+    },
+    /// Variables of different lengths.
+    #[error(
+        "\"{first}\" has {n_first} samples and \"{second}\" {n_second}; save signals of one rate (in MATLAB: interp1), \
+         or name others with --map"
+    )]
+    LengthsDiffer {
+        /// A variable.
+        first: String,
+        /// Its length.
+        n_first: usize,
+        /// Another.
+        second: String,
+        /// Its length.
+        n_second: usize,
+    },
     /// Lines that end as on a Macintosh before 2001.
     #[error("lines end with a carriage return alone; convert the file (tr '\\r' '\\n')")]
     CarriageReturns,

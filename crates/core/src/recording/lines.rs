@@ -95,6 +95,27 @@ impl LineReader {
         Ok(())
     }
 
+    /// Everything that is left, unless it is more than `limit` says of the bytes stored so far.
+    pub(crate) fn rest(&mut self, limit: impl Fn(u64) -> u64) -> Result<Vec<u8>, ReadErrorKind> {
+        let mut bytes = self.buffer[self.start..self.end].to_vec();
+        (self.start, self.end) = (0, 0);
+        while !self.at_end {
+            self.fill()?;
+            bytes.extend_from_slice(&self.buffer[..self.end]);
+            self.end = 0;
+            let limit = limit(self.source.n_stored());
+            if bytes.len() as u64 > limit {
+                return Err(ReadErrorKind::ExpandsTooFar { limit });
+            }
+        }
+        Ok(bytes)
+    }
+
+    /// Bytes that have been taken from the source and bytes that it has, where that is known.
+    pub(crate) fn progress(&self) -> Option<(u64, u64)> {
+        Some((self.source.n_stored(), self.source.n_bytes()?))
+    }
+
     /// SHA-256 of all bytes of the source.
     pub(crate) fn sha256(self) -> Result<String, ReadErrorKind> {
         self.source.sha256()

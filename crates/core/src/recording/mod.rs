@@ -7,7 +7,8 @@
 //!
 //! In the order in which bytes pass: `source` opens, decompresses and hashes; `lines` cuts; `sniff` finds the
 //! separator; `opening` and `header` give the columns a meaning, with what `options` says; `rows` reads numbers;
-//! `clock` drops rows that contradict their neighbors; `stamps` spreads equal stamps and finds gaps; `samples` keeps.
+//! `mat`
+//! makes columns of a MATLAB file; `clock` drops rows that contradict their neighbors; `stamps` spreads equal stamps and finds gaps; `samples` keeps.
 
 mod body;
 mod clock;
@@ -16,6 +17,7 @@ mod expression;
 mod fields;
 mod header;
 mod lines;
+mod mat;
 mod opening;
 mod options;
 mod read;
@@ -32,7 +34,7 @@ mod wording;
 
 pub use error::{Place, ReadError, ReadErrorKind};
 pub use options::{Calibration, ColumnMap, Columns, ExpressionFault, FixedChannel, OptionSyntaxError};
-pub use read::{ReadOptions, read_recording};
+pub use read::{ReadOptions, read_recording, read_recording_observed};
 pub use repair::{Repairs, SkippedRow};
 pub use row_fault::RowFault;
 pub use samples::{CHUNK_ROWS, Chunk, MEMORY_ROWS, Samples};

@@ -9,6 +9,7 @@ use super::body::Body;
 use super::error::{Place, ReadError, ReadErrorKind};
 use super::fields::{is_blank, is_comment, strip_line_end};
 use super::lines::{LineReader, Lines, MAX_LINE_BYTES};
+use super::mat;
 use super::opening::{self, Comment, Opened};
 use super::options::{Calibration, ColumnMap, Columns, FixedChannel};
 use super::row_fault::RowFault;
@@ -58,7 +59,24 @@ impl Default for ReadOptions {
 /// # Errors
 /// [`ReadError`] says where and why the file is refused, and what to do.
 pub fn read_recording(source: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
-    read(source, options).map_err(|(place, kind)| ReadError { path: source.to_owned(), place, kind: Box::new(kind) })
+    read_recording_observed(source, options, &mut |_, _| {})
+}
+
+/// As [`read_recording`]; `observe` is told, now and then, how much of how much has been read, in bytes or
+/// samples; not where nobody knows how much there is, as of standard input.
+///
+/// # Errors
+/// As [`read_recording`].
+pub fn read_recording_observed(
+    source: &Path,
+    options: &ReadOptions,
+    observe: &mut dyn FnMut(u64, u64),
+) -> Result<Recording, ReadError> {
+    read(source, options, observe).map_err(|(place, kind)| ReadError {
+        path: source.to_owned(),
+        place,
+        kind: Box::new(kind),
+    })
 }
 
 /// A reason and, unless it concerns the whole file, its place.
@@ -68,15 +86,26 @@ pub(super) fn whole(kind: ReadErrorKind) -> Refusal {
     (None, kind)
 }
 
-fn read(path: &Path, options: &ReadOptions) -> Result<Recording, Refusal> {
+fn read(path: &Path, options: &ReadOptions, observe: &mut dyn FnMut(u64, u64)) -> Result<Recording, Refusal> {
     let mut lines = LineReader::new(ByteSource::open(path).map_err(whole)?);
     let start = lines.peek(MAX_LINE_BYTES).map_err(whole)?;
+    if let Some(kind) = mat::kind(start) {
+        let shown = path.to_string_lossy().into_owned();
+        return match kind {
+            mat::Kind::Level5(endian) => mat::read(lines, shown, endian, options, observe),
+            mat::Kind::Level4 => Err(not_read("a MATLAB file of version 4")),
+            mat::Kind::Hdf5 => Err(not_read("a MATLAB file of version 7.3 (HDF5)")),
+        };
+    }
     let n_mark = sniff::check_text(start).map_err(whole)?;
     let n_columns = options.columns.as_ref().map(|columns| columns.names.len());
     let layout = sniff::layout(&start[n_mark..], n_columns);
     lines.skip(n_mark);
     let mut reading = Reading::new(layout, options);
     loop {
+        if let Some((done, all)) = lines.progress() {
+            observe(done, all);
+        }
         match lines.next().map_err(whole)? {
             Lines::Whole(text) => reading.take(text)?,
             Lines::TooLong => reading.too_long()?,
@@ -85,6 +114,10 @@ fn read(path: &Path, options: &ReadOptions) -> Result<Recording, Refusal> {
     }
     let sha256 = lines.sha256().map_err(whole)?;
     reading.finish(path.to_string_lossy().into_owned(), sha256)
+}
+
+fn not_read(found: &'static str) -> Refusal {
+    whole(ReadErrorKind::NotRead { found, remedy: "load it in MATLAB and save it with save -v7" })
 }
 
 /// Bytes of a piece, about: large enough that handing it to a thread costs nothing beside reading it.

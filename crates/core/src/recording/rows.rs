@@ -90,17 +90,39 @@ impl RowParser {
             })?;
         }
         let channels = channels(plan, &slots);
-        for (value, source) in channels.iter().zip(&plan.sources) {
-            if let Some(Source::Field { slot, .. }) = source
-                && (value.is_nan() || value.abs() > LARGEST)
-                && let Some(index) = plan.fields.iter().position(|field| *field == Some(*slot))
-            {
+        match absurd(plan, &channels) {
+            Some((index, _)) => {
                 let (column, text) = shown(plan, index, fields.get(index));
-                return Err((index as u64 + 1, RowFault::Absurd { column, text }));
+                Err((index as u64 + 1, RowFault::Absurd { column, text }))
             }
+            None => Ok(channels),
         }
-        Ok(channels)
     }
+
+    /// The row of numbers that need no reading.
+    pub(crate) fn row_of(&self, slots: &[f64; MAX_COLUMNS]) -> Line {
+        let plan = &self.plan;
+        let channels = channels(plan, slots);
+        let Some((index, slot)) = absurd(plan, &channels) else { return Line::Row(channels) };
+        let (column, text) = shown(plan, index, slots[slot].to_string().as_bytes());
+        let fault = if slots[slot].is_finite() {
+            RowFault::Absurd { column, text }
+        } else {
+            RowFault::NotFinite { column, text }
+        };
+        Line::Fault(index as u64 + 1, fault)
+    }
+}
+
+/// The first field, and its slot, whose value no measurement has.
+fn absurd(plan: &Plan, channels: &Channels) -> Option<(usize, usize)> {
+    channels.iter().zip(&plan.sources).find_map(|(value, source)| match source {
+        Some(Source::Field { slot, .. }) if value.is_nan() || value.abs() > LARGEST => {
+            let index = plan.fields.iter().position(|field| *field == Some(*slot))?;
+            Some((index, *slot))
+        }
+        _ => None,
+    })
 }
 
 fn channels(plan: &Plan, slots: &[f64; MAX_COLUMNS]) -> Channels {

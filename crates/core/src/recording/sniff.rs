@@ -16,12 +16,22 @@ const SAMPLE_FIELDS: usize = 4096;
 const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 
 /// Files that people mistake for text: first bytes, what they are, what to do.
-const MAGIC: [(&[u8], &str, &str); 6] = [
+const MAGIC: [(&[u8], &str, &str); 5] = [
     (b"PK\x03\x04", "a zip archive or a spreadsheet", "unpack it, or export the sheet as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet or document", "export the sheet as CSV"),
     (b"\x28\xb5\x2f\xfd", "a file compressed with zstd", "decompress it, or compress with gzip instead"),
     (b"\xfd7zXZ", "a file compressed with xz", "decompress it, or compress with gzip instead"),
     (b"BZh", "a file compressed with bzip2", "decompress it, or compress with gzip instead"),
+];
+
+/// Formats of recordings that are known and not read.
+const NOT_READ: [(&[u8], &str, &str); 2] = [
+    (
+        b"PAR1",
+        "a Parquet file",
+        "write it as CSV: python3 -c 'import pandas, sys; pandas.read_parquet(sys.argv[1]).to_csv(sys.argv[2], \
+         index=False)' log.parquet log.csv",
+    ),
     (b"\x89HDF", "an HDF5 file", "export it as CSV"),
 ];
 
@@ -30,6 +40,11 @@ pub(crate) fn check_text(start: &[u8]) -> Result<usize, ReadErrorKind> {
     for (magic, found, remedy) in MAGIC {
         if start.starts_with(magic) {
             return Err(ReadErrorKind::Binary { found, remedy });
+        }
+    }
+    for (magic, found, remedy) in NOT_READ {
+        if start.starts_with(magic) {
+            return Err(ReadErrorKind::NotRead { found, remedy });
         }
     }
     if start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff") {

@@ -1,6 +1,6 @@
 //! Where the bytes come from: a file, standard input, compressed or not; hashed as they pass.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
@@ -22,12 +22,14 @@ const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 struct Hashing {
     inner: Box<dyn Read>,
     digest: Rc<RefCell<Sha256>>,
+    n_stored: Rc<Cell<u64>>,
 }
 
 impl Read for Hashing {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let n_bytes = self.inner.read(buffer)?;
         self.digest.borrow_mut().update(&buffer[..n_bytes]);
+        self.n_stored.set(self.n_stored.get() + n_bytes as u64);
         Ok(n_bytes)
     }
 }
@@ -36,6 +38,10 @@ impl Read for Hashing {
 pub(crate) struct ByteSource {
     reader: Decoded,
     digest: Rc<RefCell<Sha256>>,
+    /// Bytes taken so far, as they are stored.
+    n_stored: Rc<Cell<u64>>,
+    /// Bytes of the file.
+    n_bytes: Option<u64>,
 }
 
 enum Decoded {
@@ -49,10 +55,13 @@ impl ByteSource {
         if path.as_os_str() == "-" {
             return Self::over(Box::new(io::stdin()));
         }
-        let opened = File::open(path).and_then(|file| Ok((file.metadata()?.is_dir(), file)));
+        let opened = File::open(path).and_then(|file| Ok((file.metadata()?, file)));
         match opened {
-            Ok((true, _)) => Err(ReadErrorKind::Directory),
-            Ok((false, file)) => Self::over(Box::new(file)),
+            Ok((metadata, _)) if metadata.is_dir() => Err(ReadErrorKind::Directory),
+            Ok((metadata, file)) => {
+                let n_bytes = Some(metadata.len()).filter(|_| metadata.is_file());
+                Ok(Self { n_bytes, ..Self::over(Box::new(file))? })
+            }
             Err(source) => Err(match source.kind() {
                 io::ErrorKind::NotFound => ReadErrorKind::NotFound,
                 io::ErrorKind::PermissionDenied => ReadErrorKind::PermissionDenied,
@@ -71,11 +80,22 @@ impl ByteSource {
         (&mut inner).take(GZIP_MAGIC.len() as u64).read_to_end(&mut start).map_err(unreadable)?;
         let is_gzip = start == GZIP_MAGIC;
         let whole = Box::new(Cursor::new(start).chain(inner));
-        let hashing = Hashing { inner: whole, digest: Rc::clone(&digest) };
+        let n_stored = Rc::new(Cell::new(0));
+        let hashing = Hashing { inner: whole, digest: Rc::clone(&digest), n_stored: Rc::clone(&n_stored) };
         let buffered = BufReader::with_capacity(READ_BYTES, hashing);
         let reader =
             if is_gzip { Decoded::Gzip(Box::new(MultiGzDecoder::new(buffered))) } else { Decoded::Plain(buffered) };
-        Ok(Self { reader, digest })
+        Ok(Self { reader, digest, n_stored, n_bytes: None })
+    }
+
+    /// Bytes taken so far, as they are stored.
+    pub(crate) fn n_stored(&self) -> u64 {
+        self.n_stored.get()
+    }
+
+    /// Bytes that are stored, where that is known.
+    pub(crate) fn n_bytes(&self) -> Option<u64> {
+        self.n_bytes
     }
 
     /// Fills what it can of `buffer`; 0 is the end.

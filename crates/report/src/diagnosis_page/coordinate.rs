@@ -19,7 +19,7 @@ pub enum PageCoordinate {
     TimeSinceLastMove,
     /// Cycle of motion.
     Cycle,
-    /// Force of the base model.
+    /// Force as measured.
     Force,
 }
 

@@ -1,3 +1,0 @@
-//! Channels moved in time against the force.
-
-pub(crate) use pam_core::shift::shifted;
