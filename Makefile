@@ -11,7 +11,7 @@ PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
 PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench
 
-.PHONY: all install test check bench compare tables datasets recordings prove prove-real clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial hard-use fuzz datasets recordings prove prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -65,6 +65,21 @@ compare: cargo-is-there
 tables: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@PAM_BIN=$(BIN) scripts/tables
+
+# Every command of datasets/TUTORIAL.md, in an empty folder.
+tutorial: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/run-tutorial --bin $(BIN)
+
+# Kills, full disks, closed pipes, two writers, foreign names.
+hard-use: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/hard-use --bin $(BIN)
+
+# Broken input for every reader: SECONDS for each, one after another.
+SECONDS ?= 60
+fuzz: cargo-is-there
+	@scripts/fuzz/run $(SECONDS)
 
 # Writes the shipped recordings anew, byte for byte.
 datasets: cargo-is-there

@@ -130,7 +130,8 @@ fn what_no_lift_has_is_refused_by_name() {
     insta::assert_snapshot!(refused(&[("period_ms = 10.0", "period_ms = 10.5")]), @"error: lift.toml: controller.period_ms = 10.5 is no multiple of plant.step_ms = 1; choose 10 or 11, or another step");
     insta::assert_snapshot!(refused(&[("duration_s = 5.0", "duration_s = 5.003")]), @"error: lift.toml: reference.duration_s = 5.003 is no multiple of controller.period_ms / 1000 = 0.01; choose 5 or 5.01, or another step");
     insta::assert_snapshot!(refused(&[("highest_kpa = 500.0", "highest_kpa = 700.0")]), @"error: lift.toml: valve.highest_kpa = 700 is not below valve.supply_kpa = 600");
-    insta::assert_snapshot!(refused(&[("kp_per_s2", "kp_per_s")]), @"error: lift.toml:66:1: unknown field `kp_per_s`, expected one of `period_ms`, `kp_per_s2`, `kd_per_s`, `observer_rad_per_s`, `length`, `integral_per_s3`, `disturbance_observer`, `lag_compensation`, `valve_lag_ms`, `pressure_loop_ms`, `hysteresis_aware`, `presliding_mm`, `effect_memory`, `payload_estimation`");
+    insta::assert_snapshot!(refused(&[("kp_per_s2", "kp_per_s")]), @"error: lift.toml:66:1: unknown field `kp_per_s`; did you mean `kp_per_s2`?");
+    insta::assert_snapshot!(refused(&[("duration_s = 5.0", "duration_s = 3600.0"), ("period_ms = 10.0", "period_ms = 1.0")]), @"error: lift.toml: the lift has 3602000 periods of the controller, more than 500000; shorten the times of [reference] or lengthen controller.period_ms");
     insta::assert_snapshot!(refused(&[("\"proportional\"", "\"poppet\"")]), @"error: lift.toml:46:8: unknown variant `poppet`, expected `proportional` or `on-off`");
 }
 

@@ -366,7 +366,7 @@ fn every_mistake_gets_one_line_with_place_and_remedy() {
     error: short.csv: 2.0 s of motion in all is too short to judge by; record at least 3 s more (blocks of some seconds are held out in turn)
     error: empty.csv: the file holds no rows; record again, or check that the logger closed the file
     error: missing.csv: no such file; check the path
-    error: cannot read missing.json: No such file or directory (os error 2)
+    error: cannot read missing.json: no such file; check the path
     error: broken.json:1:25: EOF while parsing a value; expected a pam-model/1 artifact
     error: inverse.json: schema is "pam-inverse/1", expected "pam-model/1"; write it with pam-identify
     error: cannot write sub/refused.json: sub is not a folder; name another path

@@ -244,11 +244,11 @@ fn every_bad_command_line_gets_one_line_with_the_remedy() {
         ),
         (
             "good.csv --muscle none.toml --out model.json".to_owned(),
-            "cannot read muscle file none.toml: No such file or directory (os error 2)",
+            "cannot read muscle file none.toml: no such file; check the path",
         ),
         (
             "good.csv --muscle worse.toml --out model.json".to_owned(),
-            "worse.toml:3:1: unknown field `braid_angle`, expected one of `rest_length_mm`, `rest_radius_mm`, `braid_angle_deg`, `wall_thickness_mm`, `strand_count`, `strand_diameter_mm`, `strand_modulus_gpa`, `fit`",
+            "worse.toml:3:1: unknown field `braid_angle`; did you mean `braid_angle_deg`?",
         ),
         (
             "good.csv --muscle m.toml --out sub/model.json".to_owned(),
@@ -500,7 +500,7 @@ fn a_freed_braid_angle_comes_back() {
 }
 
 #[test]
-fn a_closed_pipe_is_named() {
+fn a_closed_pipe_ends_the_run_without_a_word() {
     let bench = Bench::new();
     let mut child = Command::new(env!("CARGO_BIN_EXE_pam-identify"))
         .args("good.csv --muscle m.toml --out - --quiet".split(' '))
@@ -513,5 +513,5 @@ fn a_closed_pipe_is_named() {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(said, "error: standard output was closed before everything was written\n");
+    assert_eq!(said, "");
 }

@@ -208,6 +208,7 @@ fn leaving_the_model_s_domain_is_said() {
 fn every_bad_input_gets_one_line_with_the_remedy() {
     let bench = Bench::new();
     bench.file("diagnosis.json", "{\"schema\": \"pam-diagnosis/1\"}");
+    bench.file("earlier.json", &MODEL.replace("pam-model/1", "pam-model/0"));
     bench.file("later.json", &MODEL.replace("pam-model/1", "pam-model/9"));
     bench.file("broken.json", &MODEL[..MODEL.len() / 2]);
     bench.file("empty.json", "");
@@ -216,14 +217,20 @@ fn every_bad_input_gets_one_line_with_the_remedy() {
     bench.file("odd.json", &MODEL.replacen("\"form\"", "\"shape\"", 1));
     bench.file("gears.json", &with_effects(&[("stribek", &[])]));
     let cases = [
-        ("log.csv --model none.json --out out.csv", "cannot read none.json: No such file or directory (os error 2)"),
+        ("log.csv --model none.json --out out.csv", "cannot read none.json: no such file; check the path"),
         (
             "log.csv --model diagnosis.json --out out.csv",
             "diagnosis.json: schema is \"pam-diagnosis/1\", expected \"pam-model/1\"; write it with pam-identify",
         ),
         (
             "log.csv --model later.json --out out.csv",
-            "later.json: schema is \"pam-model/9\", expected \"pam-model/1\"; write it with pam-identify",
+            "later.json: schema is \"pam-model/9\", expected \"pam-model/1\"; a newer version wrote it; update the programs, \
+             or write it anew with pam-identify",
+        ),
+        (
+            "log.csv --model earlier.json --out out.csv",
+            "earlier.json: schema is \"pam-model/0\", expected \"pam-model/1\"; an older version wrote it; write it anew with \
+             pam-identify",
         ),
         (
             "log.csv --model gears.json --out out.csv",

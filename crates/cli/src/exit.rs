@@ -1,8 +1,11 @@
 //! Exit codes: 0 accepted, 1 finished but rejected, 2 input or usage.
 
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
+use crate::OutputError;
 use crate::message::{Format, Message, Said};
+use crate::target::is_stdout;
 
 /// What a program that ran to its end thinks of the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,11 +17,13 @@ pub enum Verdict {
 }
 
 /// Exit code of a run; an error becomes exactly one line on standard error, `error: ` and the chain of
-/// reasons joined by `: `, or its like in JSON, and exit code 2.
+/// reasons joined by `: `, or its like in JSON, and exit code 2. Where the reader of standard output has left
+/// (`| head -1`), it had enough: exit code 2 without a word.
 pub fn exit_code(result: anyhow::Result<Verdict>, format: Format) -> ExitCode {
     match result {
         Ok(Verdict::Accepted) => ExitCode::SUCCESS,
         Ok(Verdict::Rejected) => ExitCode::from(1),
+        Err(error) if is_unread(&error) => ExitCode::from(2),
         Err(error) => usage_error(&one_line(&error), format),
     }
 }
@@ -30,16 +35,21 @@ pub(crate) fn usage_error(message: &str, format: Format) -> ExitCode {
     ExitCode::from(2)
 }
 
+/// Whether standard output was closed before everything was written.
+fn is_unread(error: &anyhow::Error) -> bool {
+    let unread = |output: &OutputError| matches!(output, OutputError::Closed { path } if is_stdout(path));
+    error.chain().any(|cause| match cause.downcast_ref::<std::io::Error>() {
+        // An output wraps what it says of itself into the error of a writer, which shows it to nobody else.
+        Some(reason) => match reason.get_ref() {
+            Some(inner) => inner.downcast_ref().is_some_and(unread),
+            None => reason.kind() == ErrorKind::BrokenPipe,
+        },
+        None => cause.downcast_ref().is_some_and(unread),
+    })
+}
+
 /// The chain of reasons; one that its predecessor has already quoted is left out.
 fn one_line(error: &anyhow::Error) -> String {
-    let closed = |cause: &(dyn std::error::Error + 'static)| {
-        cause
-            .downcast_ref::<std::io::Error>()
-            .is_some_and(|reason| reason.kind() == std::io::ErrorKind::BrokenPipe && reason.get_ref().is_none())
-    };
-    if error.chain().any(closed) {
-        return "standard output was closed before everything was written".to_owned();
-    }
     let mut line = String::new();
     for cause in error.chain() {
         let text = cause.to_string();
@@ -77,8 +87,13 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_pipe_is_named() {
-        let error = anyhow::Error::from(std::io::Error::from(std::io::ErrorKind::BrokenPipe)).context("writing");
-        assert_eq!(one_line(&error), "standard output was closed before everything was written");
+    fn a_reader_that_left_is_told_from_other_troubles() {
+        let closed = |path: &str| anyhow::Error::from(OutputError::Closed { path: path.into() }).context("writing");
+        assert!(is_unread(&closed("-")));
+        assert!(is_unread(&anyhow::Error::from(std::io::Error::from(ErrorKind::BrokenPipe)).context("writing")));
+        let wrapped = std::io::Error::new(ErrorKind::BrokenPipe, OutputError::Closed { path: "-".into() });
+        assert!(is_unread(&anyhow::Error::from(wrapped).context("writing")));
+        assert!(!is_unread(&closed("fifo")));
+        assert!(!is_unread(&anyhow::anyhow!("broken")));
     }
 }

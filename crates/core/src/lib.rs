@@ -13,3 +13,4 @@ pub mod muscle;
 pub mod quality;
 pub mod recording;
 pub mod shift;
+pub mod spelling;

@@ -31,6 +31,8 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::spelling::{nearest, toml_fault, unreadable};
+
 /// Dimensions of a muscle, in SI; see the [module](self) for symbols.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -245,7 +247,7 @@ fn nylon_modulus_gpa() -> f64 {
 #[derive(Debug, thiserror::Error)]
 pub enum MuscleError {
     /// The file cannot be read.
-    #[error("cannot read muscle file {}: {reason}", path.display())]
+    #[error("cannot read muscle file {}: {}", path.display(), unreadable(path, reason))]
     Read {
         /// File asked for.
         path: PathBuf,
@@ -307,14 +309,8 @@ impl MuscleFile {
     /// See [`MuscleFile::read`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, MuscleError> {
         let written: MuscleToml = toml::from_str(text).map_err(|error| {
-            let start = error.span().map_or(0, |span| span.start).min(text.len());
-            let before = &text[..start];
-            MuscleError::Parse {
-                path: path.to_owned(),
-                line: before.matches('\n').count() + 1,
-                column: before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1,
-                reason: error.message().replace('\n', " "),
-            }
+            let (line, column, reason) = toml_fault(text, &error);
+            MuscleError::Parse { path: path.to_owned(), line, column, reason }
         })?;
         let within = |key, value: f64, lowest, highest| {
             if value >= lowest && value <= highest {
@@ -341,6 +337,8 @@ impl MuscleFile {
             let Some(dimension) = Dimension::ALL.into_iter().find(|dimension| dimension.key() == name) else {
                 let remedy = if name.starts_with("strand_") {
                     "the strands act only through their modulus, which is always fitted".to_owned()
+                } else if let Some(near) = nearest(&name, Dimension::ALL.map(Dimension::key)) {
+                    format!("did you mean \"{near}\"?")
                 } else {
                     format!("it can name {}", Dimension::ALL.map(Dimension::key).join(", "))
                 };
@@ -401,6 +399,21 @@ pub(crate) mod tests {
                     strand_count = 240\nstrand_diameter_mm = 0.25\n";
         let message = MuscleFile::parse(text, Path::new("m.toml")).unwrap_err().to_string();
         assert_eq!(message, "m.toml: rest_length_mm = 0.267 is outside 10 to 5000; check the value and its unit");
+    }
+
+    #[test]
+    fn a_misspelt_word_gets_the_nearest_one() {
+        let text = "rest_length_mm = 267\nrest_radius_mm = 10\nbraid_angle_deg = 25\nwall_thickness_mm = 1\n\
+                    strand_count = 240\nstrand_diameter_mm = 0.25\n";
+        let message = |text: &str| MuscleFile::parse(text, Path::new("m.toml")).unwrap_err().to_string();
+        assert_eq!(
+            message(&text.replace("rest_radius", "rest_raduis")),
+            "m.toml:2:1: unknown field `rest_raduis_mm`; did you mean `rest_radius_mm`?"
+        );
+        assert_eq!(
+            message(&format!("{text}fit = [\"braid_angel_deg\"]\n")),
+            "m.toml: fit names \"braid_angel_deg\"; did you mean \"braid_angle_deg\"?"
+        );
     }
 
     #[test]

@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
+use pam_core::spelling::unreadable;
+
 /// Why a configuration is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
     /// The file cannot be read.
-    #[error("cannot read configuration {}: {reason}", path.display())]
+    #[error("cannot read configuration {}: {}", path.display(), unreadable(path, reason))]
     Read {
         /// File asked for.
         path: PathBuf,
@@ -61,6 +63,20 @@ pub enum ConfigError {
         below: f64,
         /// Next multiple above.
         above: f64,
+    },
+    /// A lift of so many periods that its signals would not fit into memory.
+    #[error(
+        "{}: the lift has {n_periods:.0} periods of the controller, more than {most:.0}; shorten the times of [reference] or \
+         lengthen controller.period_ms",
+        path.display()
+    )]
+    TooLong {
+        /// File being read.
+        path: PathBuf,
+        /// Periods of the lift.
+        n_periods: f64,
+        /// Most periods accepted.
+        most: f64,
     },
     /// A lower limit that is not below the upper one.
     #[error("{}: {low_key} = {low} is not below {high_key} = {high}", path.display())]

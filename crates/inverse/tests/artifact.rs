@@ -113,6 +113,14 @@ fn another_schema_and_broken_numbers_are_refused() {
         refused("/schema", json!("pam-model/1")),
         "inverse.json: schema is \"pam-model/1\", expected \"pam-inverse/1\"; write it with pam-train-inverse"
     );
+    for (version, remedy) in [
+        (0, "an older version wrote it; write it anew with pam-train-inverse"),
+        (2, "a newer version wrote it; update the programs, or write it anew with pam-train-inverse"),
+    ] {
+        let found = format!("pam-inverse/{version}");
+        let expected = format!("inverse.json: schema is \"{found}\", expected \"pam-inverse/1\"; {remedy}");
+        assert_eq!(refused("/schema", json!(found)), expected);
+    }
     assert!(refused("/weights/0/0/0", Value::Null).contains("invalid type: null, expected f64"));
     let text = written().to_string().replace("0.01", "NaN");
     assert!(read(&text).expect_err("a refusal").contains("expected a pam-inverse/1 artifact"));

@@ -284,6 +284,6 @@ impl DiagnosisArtifact {
     /// # Errors
     /// [`ArtifactError`] names the file, the place and what to do.
     pub fn read(path: &Path) -> Result<(Self, String), ArtifactError> {
-        super::read(path, SCHEMA, "write it with pam-diagnose")
+        super::read(path, SCHEMA, "pam-diagnose")
     }
 }

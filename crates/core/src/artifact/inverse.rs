@@ -297,7 +297,7 @@ impl InverseArtifact {
     /// # Errors
     /// [`ArtifactError`] names the file, the place and what to do.
     pub fn read(path: &Path) -> Result<(Self, String), ArtifactError> {
-        let (artifact, sha256): (Self, String) = super::read(path, SCHEMA, "write it with pam-train-inverse")?;
+        let (artifact, sha256): (Self, String) = super::read(path, SCHEMA, "pam-train-inverse")?;
         artifact.check().map_err(|what| ArtifactError::Implausible { path: path.to_owned(), what })?;
         Ok((artifact, sha256))
     }

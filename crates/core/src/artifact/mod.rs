@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::recording::Recording;
+use crate::spelling::{suggesting, unreadable};
 
 /// Program that wrote an artifact.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -76,7 +77,7 @@ pub enum InputRole {
 #[derive(Debug, thiserror::Error)]
 pub enum ArtifactError {
     /// The file cannot be read.
-    #[error("cannot read {}: {reason}", path.display())]
+    #[error("cannot read {}: {}", path.display(), unreadable(path, reason))]
     Read {
         /// File asked for.
         path: PathBuf,
@@ -107,7 +108,7 @@ pub enum ArtifactError {
         /// Schema that was expected.
         expected: &'static str,
         /// What to do.
-        remedy: &'static str,
+        remedy: String,
     },
     /// A value that no artifact of this kind has.
     #[error("{}: {what}; write the artifact anew with its program", path.display())]
@@ -125,7 +126,7 @@ pub fn sha256_hex(bytes: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Reads an artifact of schema `expected`; gives its SHA-256 as well.
+/// Reads an artifact of schema `expected`, which `program` writes; gives its SHA-256 as well.
 ///
 /// # Errors
 /// [`ArtifactError`] names the file and the place.
@@ -143,15 +144,31 @@ pub(crate) fn read<T: DeserializeOwned>(
         path: path.to_owned(),
         line: error.line(),
         column: error.column(),
-        reason: without_position(&error.to_string()),
+        reason: suggesting(&without_position(&error.to_string())),
         expected,
     };
     let head: Head = serde_json::from_slice(&bytes).map_err(|error| parse(&error))?;
     if head.schema != expected {
-        return Err(ArtifactError::Schema { path: path.to_owned(), found: head.schema, expected, remedy: program });
+        let remedy = remedy(&head.schema, expected, program);
+        return Err(ArtifactError::Schema { path: path.to_owned(), found: head.schema, expected, remedy });
     }
     let artifact = serde_json::from_slice(&bytes).map_err(|error| parse(&error))?;
     Ok((artifact, sha256_hex(&bytes)))
+}
+
+/// What to do about an artifact of schema `found` where one of schema `expected` is needed, which `program` writes.
+fn remedy(found: &str, expected: &str, program: &str) -> String {
+    let version = |schema: &str| schema.rsplit_once('/').and_then(|(_, version)| version.parse::<u64>().ok());
+    let same_kind = found.rsplit_once('/').map(|(kind, _)| kind) == expected.rsplit_once('/').map(|(kind, _)| kind);
+    match (version(found), version(expected)) {
+        (Some(found), Some(expected)) if same_kind && found < expected => {
+            format!("an older version wrote it; write it anew with {program}")
+        }
+        (Some(_), Some(_)) if same_kind => {
+            format!("a newer version wrote it; update the programs, or write it anew with {program}")
+        }
+        _ => format!("write it with {program}"),
+    }
 }
 
 /// The message of a JSON error without the position that it ends with.

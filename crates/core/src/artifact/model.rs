@@ -279,7 +279,7 @@ impl ModelArtifact {
     /// # Errors
     /// [`ArtifactError`] names the file, the place and what to do.
     pub fn read(path: &Path) -> Result<(Self, String), ArtifactError> {
-        let (artifact, sha256): (Self, String) = super::read(path, SCHEMA, "write it with pam-identify")?;
+        let (artifact, sha256): (Self, String) = super::read(path, SCHEMA, "pam-identify")?;
         artifact.check().map_err(|what| ArtifactError::Implausible { path: path.to_owned(), what })?;
         Ok((artifact, sha256))
     }
@@ -303,6 +303,10 @@ impl ModelArtifact {
             [rest_length_m, rest_radius_m, braid_angle_rad, wall_thickness_m, strand_count, strand_diameter_m];
         if dimensions.iter().any(|&value| value <= 0.0) || self.strand_modulus_pa <= 0.0 {
             return Err("a dimension of the muscle is not positive".to_owned());
+        }
+        let Thresholds { length_m, pressure_pa } = self.direction;
+        if length_m < 0.0 || pressure_pa < 0.0 {
+            return Err(format!("a threshold of the direction is negative: {length_m} m, {pressure_pa} Pa"));
         }
         for (index, entry) in self.effects.iter().enumerate() {
             let term = entry.term()?;
@@ -470,6 +474,15 @@ mod tests {
         parameter width_n of effect rubber-hysteresis is NaN; physics allows 0 to 200 N
         effect rubber-hysteresis stands there twice
         "#);
+    }
+
+    #[test]
+    fn a_direction_that_flips_before_it_turns_is_refused() {
+        let mut turned = artifact(vec![]);
+        turned.direction = Thresholds { length_m: 0.0, pressure_pa: 0.0 };
+        turned.check().expect("no threshold is one");
+        turned.direction.length_m = -1.0;
+        assert_eq!(turned.check(), Err("a threshold of the direction is negative: -1 m, 0 Pa".to_owned()));
     }
 
     #[test]

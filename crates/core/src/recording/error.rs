@@ -39,8 +39,11 @@ pub struct Place {
 #[non_exhaustive]
 pub enum ReadErrorKind {
     /// There is no such file.
-    #[error("no such file; check the path")]
-    NotFound,
+    #[error("{remedy}")]
+    NotFound {
+        /// What to do: the name that was probably meant, if there is one.
+        remedy: String,
+    },
     /// The file may not be read.
     #[error("permission denied; make the file readable")]
     PermissionDenied,

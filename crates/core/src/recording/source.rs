@@ -11,6 +11,7 @@ use flate2::bufread::MultiGzDecoder;
 use sha2::{Digest, Sha256};
 
 use super::error::ReadErrorKind;
+use crate::spelling::unreadable;
 
 /// Bytes asked of the system at once.
 const READ_BYTES: usize = 256 * 1024;
@@ -63,7 +64,7 @@ impl ByteSource {
                 Ok(Self { n_bytes, ..Self::over(Box::new(file))? })
             }
             Err(source) => Err(match source.kind() {
-                io::ErrorKind::NotFound => ReadErrorKind::NotFound,
+                io::ErrorKind::NotFound => ReadErrorKind::NotFound { remedy: unreadable(path, &source) },
                 io::ErrorKind::PermissionDenied => ReadErrorKind::PermissionDenied,
                 io::ErrorKind::IsADirectory => ReadErrorKind::Directory,
                 _ => ReadErrorKind::Unreadable { source },

@@ -10,6 +10,9 @@ use crate::error::ConfigError;
 use crate::plant::{Sensor, ValveKind, ValvePhysics};
 use crate::reference::Quintic;
 
+/// Periods of the controller in one lift, at most: each is kept with all its signals, about a kilobyte for both arms.
+const MOST_PERIODS: f64 = 500_000.0;
+
 /// Checks of one file.
 struct Checker<'a> {
     path: &'a Path,
@@ -75,6 +78,10 @@ impl LiftConfig {
         ];
         for time in times {
             checker.multiple(time, period)?;
+        }
+        let n_periods = times.iter().map(|(_, time_s)| time_s).sum::<f64>() / period.1;
+        if n_periods > MOST_PERIODS {
+            return Err(ConfigError::TooLong { path: path.to_owned(), n_periods, most: MOST_PERIODS });
         }
         let delay_ms = within("valve.delay_ms", valve.delay_ms, 0.0, 100.0)?;
         checker.multiple(("valve.delay_ms", delay_ms), step)?;

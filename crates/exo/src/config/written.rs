@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use pam_core::spelling::toml_fault;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -165,14 +166,8 @@ impl LiftConfig {
     /// [`ConfigError::Parse`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
         toml::from_str(text).map_err(|error| {
-            let start = error.span().map_or(0, |span| span.start).min(text.len());
-            let before = &text[..start];
-            ConfigError::Parse {
-                path: path.to_owned(),
-                line: before.matches('\n').count() + 1,
-                column: before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1,
-                reason: error.message().replace('\n', " "),
-            }
+            let (line, column, reason) = toml_fault(text, &error);
+            ConfigError::Parse { path: path.to_owned(), line, column, reason }
         })
     }
 }

@@ -1,0 +1,57 @@
+//! What the fuzz targets share: a file for the input, a mutator that knows JSON, and inputs that are in order.
+
+pub mod json;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use pam_core::artifact::ModelArtifact;
+use pam_core::muscle::MuscleFile;
+use pam_core::recording::{ReadOptions, Recording, read_recording};
+
+/// Gives `bytes` to `take` as a file, as every reader wants one. The file is the same one each time.
+pub fn with_file<T>(bytes: &[u8], take: impl FnOnce(&Path) -> T) -> T {
+    static PATH: OnceLock<PathBuf> = OnceLock::new();
+    let path = PATH.get_or_init(|| {
+        let memory = Path::new("/dev/shm");
+        let folder = if memory.is_dir() { memory.to_owned() } else { std::env::temp_dir() };
+        folder.join(format!("pam-fuzz-{}", std::process::id()))
+    });
+    let mut file = std::fs::File::create(path).expect("a file for the input");
+    file.write_all(bytes).expect("a file for the input");
+    drop(file);
+    take(path)
+}
+
+/// The muscle that inputs in order are about.
+pub fn nominal_muscle() -> MuscleFile {
+    MuscleFile::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../configs/muscle-nominal.toml")))
+        .expect("the nominal muscle")
+}
+
+/// A model of it, plain enough to begin with.
+pub fn nominal_model() -> ModelArtifact {
+    static MODEL: OnceLock<ModelArtifact> = OnceLock::new();
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/seeds/model/plain.json"));
+    MODEL.get_or_init(|| ModelArtifact::read(path).expect("the seed is a model").0).clone()
+}
+
+/// Four seconds of that muscle on a bench: length to and fro, pressure up.
+pub fn short_recording() -> Recording {
+    static PATH: OnceLock<PathBuf> = OnceLock::new();
+    let path = PATH.get_or_init(|| {
+        let mut text = "time_s,pressure_kPa,length_mm,force_N\n".to_owned();
+        for row in 0..200 {
+            let time_s = 0.02 * f64::from(row);
+            let length_mm = 245.0 + 15.0 * (3.0 * time_s).sin();
+            let pressure_kpa = 100.0 + 60.0 * time_s;
+            let force_n = pressure_kpa * (length_mm - 205.0) / 45.0;
+            text += &format!("{time_s:.2},{pressure_kpa:.2},{length_mm:.3},{force_n:.2}\n");
+        }
+        let path = std::env::temp_dir().join(format!("pam-fuzz-{}.csv", std::process::id()));
+        std::fs::write(&path, text).expect("a recording");
+        path
+    });
+    read_recording(path, &ReadOptions::default()).expect("a recording in order")
+}
