@@ -7,7 +7,7 @@ use pam_cli::{Console, Output, commit_all, read_recordings};
 use pam_core::artifact::diagnosis::Verdict;
 use pam_core::artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
 use pam_diagnosis::artifact::{Agreement, Head};
-use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose};
+use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose_observed};
 use pam_diagnosis::traces::traces;
 
 use crate::args::Args;
@@ -69,7 +69,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
         console.note("inputs are fine; nothing was diagnosed (--check)");
         return Ok(pam_cli::Verdict::Accepted);
     }
-    let found = diagnose(request)?;
+    let progress = console.progress("diagnosing", 1);
+    let found = diagnose_observed(request, &|done, all| progress.set_of(done, all))?;
+    drop(progress);
     let agreement = Agreement::of(&found)?;
     let tool = Tool { name: "pam-diagnose".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
     let head = Head { tool, inputs: hashes, seed: args.run.seed };
