@@ -11,7 +11,7 @@ PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
 PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench
 
-.PHONY: all install test check bench tables tutorial hard-use fuzz datasets recordings prove prove-real clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial hard-use fuzz datasets recordings prove prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -55,6 +55,11 @@ check: cargo-is-there
 bench: cargo-is-there
 	@$(CARGO) bench --locked --workspace
 	@scripts/bench-programs
+
+# Side by side with pyswarms, SciPy, pycma, PINTS, PySINDy and scikit-learn, into scripts/compare; needs Python 3.11, a
+# network the first time, and twenty quiet minutes.
+compare: cargo-is-there
+	@scripts/compare/compare
 
 # Every table and figure of the chain, from seeds, into out/tables.
 tables: cargo-is-there

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use pam_cli::{Console, Output, Verdict, commit_all, write_example};
+use pam_cli::{Console, Output, Verdict, pretty_json, publish, write_example};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool, sha256_hex};
 use pam_core::effects::AugmentedModel;
 use pam_exo::artifact::{ArmMetrics, MetricsArtifact, SCHEMA, TrialMetrics, paper};
@@ -133,9 +133,7 @@ impl Outputs {
             outputs.push((output, track::csv(arms)?));
         }
         if let Some(output) = self.metrics {
-            let mut json = serde_json::to_vec_pretty(artifact)?;
-            json.push(b'\n');
-            outputs.push((output, json));
+            outputs.push((output, pretty_json(artifact)?));
         }
         if let Some(output) = self.figure {
             outputs.push((output, figure::lift(arms, artifact)?.into_bytes()));
@@ -143,13 +141,7 @@ impl Outputs {
         if let (Some(output), Some(study), Some(trials)) = (self.trials_figure, study, &artifact.trials) {
             outputs.push((output, figure::envelope(study, trials, plan)?.into_bytes()));
         }
-        let written: Vec<String> = outputs.iter().map(|(output, _)| output.path().display().to_string()).collect();
-        commit_all(outputs)?;
-        let files: Vec<&str> = written.iter().map(String::as_str).filter(|path| *path != "-").collect();
-        if !files.is_empty() {
-            console.note(format!("wrote {}", files.join(", ")));
-        }
-        Ok(())
+        Ok(publish(outputs, console)?)
     }
 }
 

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
-use pam_cli::{Console, Output, commit_all, read_recordings};
+use pam_cli::{Console, Output, pretty_json, publish, read_recordings};
 use pam_core::artifact::diagnosis::Verdict;
 use pam_core::artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
 use pam_diagnosis::artifact::{Agreement, Head};
-use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose};
+use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose_observed};
 use pam_diagnosis::traces::traces;
 
 use crate::args::Args;
@@ -69,7 +69,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
         console.note("inputs are fine; nothing was diagnosed (--check)");
         return Ok(pam_cli::Verdict::Accepted);
     }
-    let found = diagnose(request)?;
+    let progress = console.progress("diagnosing", 1);
+    let found = diagnose_observed(request, &|done, all| progress.set_of(done, all))?;
+    drop(progress);
     let agreement = Agreement::of(&found)?;
     let tool = Tool { name: "pam-diagnose".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
     let head = Head { tool, inputs: hashes, seed: args.run.seed };
@@ -114,10 +116,10 @@ impl Outputs {
     ) -> anyhow::Result<()> {
         let mut outputs = Vec::new();
         if let Some(output) = self.out {
-            outputs.push((output, line_ended(serde_json::to_vec_pretty(artifact)?)));
+            outputs.push((output, pretty_json(artifact)?));
         }
         if let (Some(output), Some(model)) = (self.model, augmented) {
-            outputs.push((output, line_ended(serde_json::to_vec_pretty(model)?)));
+            outputs.push((output, pretty_json(model)?));
         }
         if let Some(output) = self.report {
             let page = page::page(artifact, &found.model, traces(found, REPORT_SAMPLES)?);
@@ -135,17 +137,6 @@ impl Outputs {
             )),
             (None, _) => {}
         }
-        let mut written: Vec<String> = outputs.iter().map(|(output, _)| output.path().display().to_string()).collect();
-        commit_all(outputs)?;
-        written.retain(|path| path != "-");
-        if !written.is_empty() {
-            console.note(format!("wrote {}", written.join(" and ")));
-        }
-        Ok(())
+        Ok(publish(outputs, console)?)
     }
-}
-
-fn line_ended(mut json: Vec<u8>) -> Vec<u8> {
-    json.push(b'\n');
-    json
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context as _, ensure};
-use pam_cli::{Console, Output, Verdict, commit_all, read_recordings, write_example};
+use pam_cli::{Console, Output, Verdict, pretty_json, publish, read_recordings, write_example};
 use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
@@ -93,23 +93,13 @@ fn write(
     figure_out: Option<Output>,
 ) -> anyhow::Result<()> {
     let mut outputs = Vec::new();
-    let mut written = Vec::new();
+    if let Some(output) = out {
+        outputs.push((output, pretty_json(artifact)?));
+    }
     if let Some(output) = figure_out {
-        written.push(output.path().display().to_string());
         outputs.push((output, figure::svg(found, artifact)?.into_bytes()));
     }
-    if let Some(output) = out {
-        let mut json = serde_json::to_vec_pretty(artifact)?;
-        json.push(b'\n');
-        written.insert(0, output.path().display().to_string());
-        outputs.push((output, json));
-    }
-    commit_all(outputs)?;
-    written.retain(|path| path != "-");
-    if !written.is_empty() {
-        console.note(format!("wrote {}", written.join(" and ")));
-    }
-    Ok(())
+    Ok(publish(outputs, console)?)
 }
 
 fn verdict(args: &Args, console: &Console, artifact: &ModelArtifact) -> Verdict {

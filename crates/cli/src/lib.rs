@@ -44,7 +44,7 @@ pub use example::write_example;
 pub use exit::{Verdict, exit_code};
 pub use interrupt::start;
 pub use message::{Drawn, Format, Message, Said, Step};
-pub use output::{Output, commit_all, finish_all, write_file};
+pub use output::{Output, commit_all, finish_all, pretty_json, publish, write_file};
 pub use output_error::OutputError;
 pub use pam_core::spelling::nearest;
 pub use program::{main, main_with_schema};

@@ -13,10 +13,12 @@ use std::fs::{File, OpenOptions, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::OutputError;
+use serde::Serialize;
+
 use crate::interrupt::live;
 use crate::target::{Claim, folder_of, follow_links, is_descriptor, is_stdout};
 use crate::temporary::Temporary;
+use crate::{Console, OutputError};
 
 /// One output of a run, opened before the work starts and committed when it is done. Dropped without being
 /// committed, it leaves the target as it was.
@@ -200,6 +202,31 @@ pub fn commit_all<B: AsRef<[u8]>>(outputs: impl IntoIterator<Item = (Output, B)>
         written.push(output);
     }
     finish_all(written)
+}
+
+/// Publishes several outputs together with [`commit_all`], and notes which files they are.
+///
+/// # Errors
+/// See [`Output::commit`].
+pub fn publish(outputs: Vec<(Output, Vec<u8>)>, console: &Console) -> Result<(), OutputError> {
+    let mut written: Vec<String> = outputs.iter().map(|(output, _)| output.path().display().to_string()).collect();
+    commit_all(outputs)?;
+    written.retain(|path| path != "-");
+    if let Some(last) = written.pop() {
+        let others = if written.is_empty() { String::new() } else { format!("{} and ", written.join(", ")) };
+        console.note(format!("wrote {others}{last}"));
+    }
+    Ok(())
+}
+
+/// A value as JSON that people can read: indented, with a line break at its end.
+///
+/// # Errors
+/// Where a value cannot be serialized.
+pub fn pretty_json(value: &impl Serialize) -> serde_json::Result<Vec<u8>> {
+    let mut json = serde_json::to_vec_pretty(value)?;
+    json.push(b'\n');
+    Ok(json)
 }
 
 /// Publishes several outputs together; see [`commit_all`].

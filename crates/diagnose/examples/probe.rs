@@ -33,7 +33,7 @@ fn main() {
     println!("{} instants, {} counted, {} blocks", track.n(), track.n_counted(), track.blocks.len());
     let limits =
         Limits { max_effects: 4, excluded: Vec::new(), matters_above_n: None, sensor_floor_n: model.fit.noise_floor_n };
-    let found = search(&setting, &start, &model.force_model(), &limits).unwrap();
+    let found = search(&setting, &start, &model.force_model(), &limits, &|| {}).unwrap();
     println!(
         "base {:.3} N, floor {:.3} N, sensor floor {:.3} N",
         found.base.held_out.mean_square().sqrt(),

@@ -109,6 +109,14 @@ pub fn check(request: Request) -> Result<(), DiagnoseError> {
 /// # Errors
 /// [`DiagnoseError`] names the recording and the remedy.
 pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
+    diagnose_observed(request, &|_, _| {})
+}
+
+/// The same, telling `observer` how many steps of how many are behind it.
+///
+/// # Errors
+/// As [`diagnose`].
+pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Result<Diagnosis, DiagnoseError> {
     let Request { estimation, holdout, model, config, accept_implausible } = request;
     let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
     let track = Track::of(&estimation, model.direction, model.geometry.rest_length_m)?;
@@ -133,7 +141,15 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
     };
     let undetermined = || DiagnoseError::Undetermined { path: estimation[0].recording.path.clone() };
     let start = base::coordinates(&model, &space);
-    let found = search(&setting, &start, &model.force_model(), &limits).ok_or_else(undetermined)?;
+    // Reading the channels, each look, and what is said of the outcome; a search may end early.
+    let (steps, done) = (config.max_effects as u64 + 3, std::cell::Cell::new(1));
+    let advance = || {
+        done.set((done.get() + 1).min(steps));
+        observer(done.get(), steps);
+    };
+    observer(done.get(), steps);
+    let found = search(&setting, &start, &model.force_model(), &limits, &advance).ok_or_else(undetermined)?;
+    observer(steps - 1, steps);
     let folds = setting.fold_fits(&found.best.state).ok_or_else(undetermined)?;
     let uncertainty = Uncertainty::of(&folds, &space);
     let sizes = Sizes::of(&found, &limits);

@@ -74,12 +74,13 @@ const LEAST_LOG_RATIO: f64 = 1.0;
 /// sees: one that only adds a column takes up a little of whatever is left.
 const STRONG_LOG_RATIO: f64 = 3.0;
 
-/// Searches.
+/// Searches; calls `looked` behind every look at the catalogue.
 pub fn search(
     setting: &Setting<'_>,
     start: &[f64],
     model: &pam_core::force::ForceModel,
     limits: &Limits,
+    looked: &dyn Fn(),
 ) -> Option<Found> {
     let state = setting.fit(Vec::new(), start, model)?;
     let held_out = setting.hold_out(&state)?;
@@ -102,6 +103,7 @@ pub fn search(
         let trials = trial::among(setting, &best.state, &best.held_out, &seen, &known, &|id| {
             !limits.excluded.iter().any(|excluded| excluded == id)
         });
+        looked();
         if round == 0 {
             first.clone_from(&trials);
         }
