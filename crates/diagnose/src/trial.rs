@@ -32,6 +32,10 @@ const LEAST_GAIN: f64 = 1e-3;
 /// Share of its evidence that an event keeps: it has been looked for at every instant of every recording.
 const EVENT_CHARGE: f64 = 0.8;
 
+/// Share of its evidence that an effect keeps whose amplitude presses against the largest that physics has for it: something
+/// else of that shape is likelier.
+const PRESSED_CHARGE: f64 = 0.7;
+
 /// Shapes that were best when a candidate was last looked at, by its id.
 pub type Shapes = BTreeMap<&'static str, Vec<f64>>;
 
@@ -107,12 +111,10 @@ pub fn among(
             if mean_square > (1.0 - LEAST_GAIN) * thin.fit.mean_square {
                 return Some(Trial { guess, mean_square, held_out: before.clone(), log_ratio: 0.0 });
             }
-            if is_pressed(setting, state, &guess)? {
-                return None;
-            }
             let held_out = hold_out(setting, state, &guess)?;
-            let charge = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
-            let log_ratio = charge * before.log_ratio(&held_out);
+            let looked_for = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
+            let strained = if is_pressed(setting, state, &guess)? { PRESSED_CHARGE } else { 1.0 };
+            let log_ratio = looked_for * strained * before.log_ratio(&held_out);
             Some(Trial { guess, mean_square, held_out, log_ratio })
         })
         .collect();
