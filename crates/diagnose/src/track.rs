@@ -85,7 +85,11 @@ impl Track {
             counted: Vec::new(),
             sampled: Vec::new(),
         };
+        // What was recorded decides which blocks go together, not the order or the names of the files.
+        let mut by_content: Vec<usize> = (0..recordings.len()).collect();
+        by_content.sort_by_key(|&index| &recordings[index].recording.sha256);
         for (index, instants) in walked.into_iter().enumerate() {
+            let rank = by_content.iter().position(|&other| other == index).unwrap_or(index);
             let first = track.instants.len();
             let rows = instants.len();
             let pieces = ((rows as f64 / per_block as f64).round() as usize).clamp(2, rows.max(2));
@@ -93,7 +97,7 @@ impl Track {
                 track.blocks.push(first + piece * rows / pieces..first + (piece + 1) * rows / pieces);
                 track.recording_of_block.push(index);
                 // Another part of each recording, so that no fold takes the same part of every protocol away.
-                track.fold_of_block.push((piece + 3 * index) % FOLDS);
+                track.fold_of_block.push((piece + 3 * rank) % FOLDS);
             }
             track.recordings.push(first..first + rows);
             track.instants.extend(instants);
@@ -104,7 +108,12 @@ impl Track {
             .map(|instant| instant.settled && instant.force_n.is_finite() && instant.moment.pressure_pa.is_finite())
             .collect();
         let stride = (track.n_counted() / LEAST_SAMPLED).clamp(1, MOST_SPARSE);
-        track.sampled = track.counted.iter().enumerate().map(|(at, &counted)| counted && at % stride == 0).collect();
+        track.sampled = track.counted.clone();
+        for range in &track.recordings {
+            for at in range.clone().filter(|at| (at - range.start) % stride != 0) {
+                track.sampled[at] = false;
+            }
+        }
         Ok(track)
     }
 
