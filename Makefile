@@ -3,8 +3,9 @@
 CARGO ?= cargo
 OUT := out
 DATA := datasets/bench-nominal
-# Where cargo builds to: target, unless the user's environment or configuration says otherwise.
-BIN = $(shell $(CARGO) metadata --no-deps --offline --format-version 1 | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release
+# Where cargo builds to: target, unless the user's environment or configuration says otherwise. Asked once, when needed.
+BIN = $(eval BIN := $(shell $(CARGO) metadata --no-deps --offline --format-version 1 | \
+	sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release)$(BIN)
 
 # Where `make install` puts programs, manual pages and completions.
 PREFIX ?= /usr/local

@@ -1,7 +1,7 @@
 //! The catalogue on the terminal, and the figure of an effect.
 
 use anyhow::{Context as _, anyhow};
-use pam_cli::{Console, Output, Verdict, write_file};
+use pam_cli::{Console, Output, Verdict, publish, write_file};
 use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::{self, CATALOGUE, Effect, Page};
 use pam_diagnosis::explain::{Driven, signature};
@@ -24,11 +24,7 @@ pub(crate) fn explain(args: &Args, console: &Console, id: &str) -> anyhow::Resul
     let figure = args.figure.as_deref().filter(|_| !args.run.check).map(Output::open).transpose()?;
     write_file("-", text(effect.page()))?;
     if let Some(output) = figure {
-        let path = output.path().display().to_string();
-        output.commit(figure_of(effect)?.as_bytes())?;
-        if path != "-" {
-            console.note(format!("wrote {path}"));
-        }
+        publish(vec![(output, figure_of(effect)?.into_bytes())], console)?;
     }
     Ok(Verdict::Accepted)
 }

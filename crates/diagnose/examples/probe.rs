@@ -50,19 +50,6 @@ fn main() {
             trial.guess.shape
         );
     }
-    for (round, trials) in found.rounds.iter().enumerate() {
-        println!("round {round}");
-        for trial in trials.iter().take(5) {
-            println!(
-                "     {:28} {:7.2} {:7.3} p {:.1e} {:?}",
-                trial.guess.id(),
-                trial.log_ratio,
-                trial.held_out.mean_square().sqrt(),
-                chance(&found.base.held_out, &trial.held_out),
-                trial.guess.shape
-            );
-        }
-    }
     let remainder = pam_diagnosis::structure::Remainder::of(&setting, &found.best.state);
     for feature in &found.features {
         let one = remainder.structure(&[feature]);

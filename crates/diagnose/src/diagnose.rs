@@ -316,9 +316,7 @@ fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) -> Vec<Region
     let state = &found.best.state;
     let after = setting.residuals_n(state);
     for (index, guess) in state.guesses.iter().enumerate() {
-        let mut others = state.guesses.clone();
-        others.remove(index);
-        let Some(rest) = setting.fit_near(others, state) else { continue };
+        let Some(rest) = setting.fit_without(state, index) else { continue };
         let before = setting.residuals_n(&rest);
         let excess: Vec<f64> =
             before.iter().zip(&after).map(|(before, after)| before * before - after * after).collect();

@@ -66,8 +66,7 @@ pub fn signature(effect: &'static dyn Effect) -> Signature {
     let path = Path::of(effect.page().protocol, effect.page().coordinate);
     let instants = path.instants(&muscle, &base);
     let without_n: Vec<f64> = instants.iter().map(|instant| instant.force_n).collect();
-    let seen = seen(&instants);
-    let shapes = effect.first_shapes(&seen);
+    let shapes = effect.first_shapes(&Seen::of(instants.iter()));
     let shape = match shapes.get(shapes.len() / 2) {
         Some(shape) => shape.clone(),
         // An event: in the middle of the first recording.
@@ -154,21 +153,6 @@ fn forces_n(model: &AugmentedModel, instants: &[Instant]) -> Vec<f64> {
 fn rms(left: &[f64], right: &[f64]) -> f64 {
     let squares: f64 = left.iter().zip(right).map(|(left, right)| (left - right).powi(2)).sum();
     (squares / left.len().max(1) as f64).sqrt()
-}
-
-fn seen(instants: &[Instant]) -> Seen {
-    let range = |value: fn(&Instant) -> f64| {
-        instants
-            .iter()
-            .map(value)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
-    };
-    Seen {
-        contraction_ratio: range(|instant| instant.moment.contraction_ratio),
-        pressure_pa: range(|instant| instant.moment.pressure_pa),
-        force_n: range(|instant| instant.force_n),
-        duration_s: range(|instant| instant.moment.time_s).1,
-    }
 }
 
 /// A path of pressure and contraction.

@@ -41,8 +41,6 @@ pub struct Found {
     pub taken: Vec<Taken>,
     /// The first look: every candidate alone.
     pub first: Vec<Trial>,
-    /// Every look, the first included.
-    pub rounds: Vec<Vec<Trial>>,
     /// Coordinates of every instant.
     pub coordinates: Coordinates,
     /// Features over them.
@@ -69,7 +67,6 @@ const LEAST_OF_ALL: f64 = 0.03;
 /// Sum of `ln(without / with)` over held-out blocks that an effect must reach: as if one block were explained and nothing
 /// lost elsewhere.
 const LEAST_LOG_RATIO: f64 = 1.0;
-
 /// The same beyond which a further effect is taken however small its share of the whole mismatch, if it changes what eq. 11
 /// sees: one that only adds a column takes up a little of whatever is left.
 const STRONG_LOG_RATIO: f64 = 3.0;
@@ -82,12 +79,11 @@ pub fn search(
     limits: &Limits,
     looked: &dyn Fn(),
 ) -> Option<Found> {
-    let state = setting.fit(Vec::new(), start, model)?;
-    let held_out = setting.hold_out(&state)?;
-    let base = Judged { state, held_out };
+    let base = judged(setting, setting.fit(Vec::new(), start, model)?)?;
     let coordinates = Coordinates::of(setting.track);
     let features = features(setting, &coordinates);
-    let seen = seen(setting);
+    let track = setting.track;
+    let seen = Seen::of(track.instants.iter().zip(&track.counted).filter(|(_, counted)| **counted).map(|(at, _)| at));
     let every: Vec<&Feature> = features.iter().collect();
     let unnamed = Remainder::of(setting, &base.state).structure(&every);
     let mut floor_square = base.held_out.mean_square();
@@ -96,7 +92,6 @@ pub fn search(
     }
     let mut best = base.clone();
     let mut first = Vec::new();
-    let mut rounds = Vec::new();
     let mut promising = Shapes::new();
     let mut known = Shapes::new();
     for round in 0..limits.max_effects {
@@ -107,7 +102,6 @@ pub fn search(
         if round == 0 {
             first.clone_from(&trials);
         }
-        rounds.push(trials.clone());
         known = promise(&trials).collect();
         promising.extend(known.clone());
         for trial in &trials {
@@ -134,7 +128,7 @@ pub fn search(
     if let Some(left) = &left {
         floor_square = floor_square.min(left.held_out.mean_square());
     }
-    Some(Found { base, best, taken, first, rounds, coordinates, features, floor_square, left })
+    Some(Found { base, best, taken, first, coordinates, features, floor_square, left })
 }
 
 /// The trials that come anywhere near the best: what may stand in the place of what was taken.
@@ -151,19 +145,17 @@ fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits:
     let gained = best.held_out.mean_square() - trial.held_out.mean_square();
     let mismatch = best.held_out.mean_square() - floor_square;
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
-    let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
     let whole = base.held_out.mean_square() - floor_square;
-    if !best.state.guesses.is_empty()
-        && !trial.guess.only_adds()
-        && trial.log_ratio > STRONG_LOG_RATIO
-        && gained > LEAST_SHARE * mismatch
-    {
-        return gained > limits.matters_above_n.map_or(0.1 * full_floor, |_| matters);
-    }
+    let further = !best.state.guesses.is_empty() && !trial.guess.only_adds() && trial.log_ratio > STRONG_LOG_RATIO;
+    let matters = match limits.matters_above_n {
+        Some(limit_n) => limit_n * limit_n,
+        None if further => 0.1 * full_floor,
+        None => 0.25 * full_floor,
+    };
     gained > LEAST_SHARE * mismatch
-        && gained > (LEAST_OF_ALL * whole).min(0.5 * full_floor)
         && gained > matters
         && trial.log_ratio > LEAST_LOG_RATIO
+        && (further || gained > (LEAST_OF_ALL * whole).min(0.5 * full_floor))
 }
 
 /// Probability that an improvement of held-out blocks is chance: a t-test on the log ratios of the blocks that it touches.
@@ -189,6 +181,12 @@ fn upper_tail(t: f64) -> f64 {
     if t >= 0.0 { half } else { 1.0 - half }
 }
 
+/// A state with what it leaves of held-out blocks.
+fn judged(setting: &Setting<'_>, state: State) -> Option<Judged> {
+    let held_out = setting.hold_out(&state)?;
+    Some(Judged { state, held_out })
+}
+
 /// Takes a trial: joint fit, shapes of everything refined once more.
 fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Option<Judged> {
     let sampled = setting.sampled();
@@ -199,9 +197,7 @@ fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Option<Judged
         state = refine_all(&sampled, state)?;
     }
     // What effects take of the base follows the new parameters.
-    let state = setting.fit_near(state.guesses.clone(), &state)?;
-    let held_out = setting.hold_out(&state)?;
-    Some(Judged { state, held_out })
+    judged(setting, setting.fit_near(state.guesses.clone(), &state)?)
 }
 
 /// What was taken, its shapes refined on every instant.
@@ -209,9 +205,7 @@ fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
     if best.state.guesses.iter().all(|guess| guess.shape.is_empty()) {
         return Some(best);
     }
-    let state = refine_all(setting, best.state)?;
-    let held_out = setting.hold_out(&state)?;
-    Some(Judged { state, held_out })
+    judged(setting, refine_all(setting, best.state)?)
 }
 
 /// Refines the shapes of all effects, each with the others as they are.
@@ -219,9 +213,7 @@ fn refine_all(setting: &Setting<'_>, state: State) -> Option<State> {
     let mut state = state;
     for index in 0..state.guesses.len() {
         let guess = state.guesses[index].clone();
-        let mut others = state.guesses.clone();
-        others.remove(index);
-        let rest = setting.fit_near(others, &state)?;
+        let rest = setting.fit_without(&state, index)?;
         let cost = trial::mean_square(setting, &rest, &guess)?;
         let (_, guess) = trial::refine(setting, &rest, &guess, cost, 1);
         let mut guesses = rest.guesses.clone();
@@ -235,7 +227,6 @@ fn refine_all(setting: &Setting<'_>, state: State) -> Option<State> {
 const STRUCTURED: f64 = 0.2;
 /// Share of its gain that an effect must keep beside such structure.
 const KEPT: f64 = 0.4;
-
 /// Share of the whole mismatch beyond which an effect does not only stand in for something else.
 const STANDS_FOR_ITSELF: f64 = 0.5;
 
@@ -256,16 +247,12 @@ fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], 
             return best;
         }
         let stand_in = (0..best.state.guesses.len()).find_map(|index| {
-            let mut others = best.state.guesses.clone();
-            others.remove(index);
-            let state = setting.fit_near(others, &best.state)?;
-            let held_out = setting.hold_out(&state)?;
-            let gained = held_out.mean_square() - best.held_out.mean_square();
-            let without = Remainder::of(setting, &state).structure(&[feature])?.held_out.mean_square();
+            let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
+            let gained = rest.held_out.mean_square() - best.held_out.mean_square();
+            let without = Remainder::of(setting, &rest.state).structure(&[feature])?.held_out.mean_square();
             // What explains most of it, or lives in that very coordinate, stands for itself.
             let lives_there = best.state.guesses[index].effect.page().coordinate == feature.coordinate;
-            (!lives_there && gained < STANDS_FOR_ITSELF * whole && without - beside < KEPT * gained)
-                .then_some(Judged { state, held_out })
+            (!lives_there && gained < STANDS_FOR_ITSELF * whole && without - beside < KEPT * gained).then_some(rest)
         });
         match stand_in {
             Some(rest) => best = rest,
@@ -282,14 +269,9 @@ fn without(
     seen: &Seen,
     promising: &Shapes,
 ) -> Option<(Judged, Vec<Trial>)> {
-    let mut others = best.state.guesses.clone();
-    others.remove(index);
-    let state = setting.fit_near(others, &best.state)?;
-    let held_out = setting.hold_out(&state)?;
-    let judged = Judged { state, held_out };
-    let rivals =
-        trial::among(setting, &judged.state, &judged.held_out, seen, promising, &|id| promising.contains_key(id));
-    Some((judged, rivals))
+    let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
+    let rivals = trial::among(setting, &rest.state, &rest.held_out, seen, promising, &|id| promising.contains_key(id));
+    Some((rest, rivals))
 }
 
 /// Looks at every effect that was taken once more: another one in its place, or none.
@@ -308,24 +290,4 @@ fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &Sha
         }
     }
     best
-}
-
-/// What the track covers.
-fn seen(setting: &Setting<'_>) -> Seen {
-    let range = |value: fn(&pam_core::motion::Instant) -> f64| {
-        setting
-            .track
-            .instants
-            .iter()
-            .zip(&setting.track.counted)
-            .filter(|(_, counted)| **counted)
-            .map(|(instant, _)| value(instant))
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
-    };
-    Seen {
-        contraction_ratio: range(|instant| instant.moment.contraction_ratio),
-        pressure_pa: range(|instant| instant.moment.pressure_pa),
-        force_n: range(|instant| instant.force_n),
-        duration_s: range(|instant| instant.moment.time_s).1,
-    }
 }

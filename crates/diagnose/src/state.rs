@@ -85,6 +85,13 @@ impl<'a> Setting<'a> {
         self.fit_from(guesses, near, &state.model, was_cut.then_some(&state.cut))
     }
 
+    /// Fits `state` without its effect `index`.
+    pub fn fit_without(&self, state: &State, index: usize) -> Option<State> {
+        let mut others = state.guesses.clone();
+        others.remove(index);
+        self.fit_near(others, state)
+    }
+
     fn fit_from(
         &self,
         guesses: Vec<Guess>,
@@ -187,14 +194,13 @@ impl<'a> Setting<'a> {
         self.joint(&limits).fit_all(&state.normal.extend(self.track, &rows, guess.amplitudes().len()), &state.fit.x)
     }
 
-    /// Mean squares over held-out blocks of `state` and one more guess that only adds.
-    pub fn hold_out_more(&self, state: &State, guess: &Guess) -> Option<HeldOut> {
+    /// Joint fit of `state` and one more guess that only adds, and its mean squares over held-out blocks.
+    pub fn weigh_more(&self, state: &State, guess: &Guess) -> Option<(JointFit, HeldOut)> {
         let (rows, limits) = self.more(state, guess);
-        self.joint(&limits).hold_out(
-            &state.normal.extend(self.track, &rows, guess.amplitudes().len()),
-            &state.fit.x,
-            &self.track.fold_of_block,
-        )
+        let rows = state.normal.extend(self.track, &rows, guess.amplitudes().len());
+        let joint = self.joint(&limits);
+        let held_out = joint.hold_out(&rows, &state.fit.x, &self.track.fold_of_block)?;
+        Some((joint.fit_all(&rows, &state.fit.x)?, held_out))
     }
 
     /// Columns of one more guess, zero where slack cuts off, and the ranges of all amplitudes.

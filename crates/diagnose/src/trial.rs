@@ -15,7 +15,7 @@ use crate::steps;
 pub struct Trial {
     /// The candidate.
     pub guess: Guess,
-    /// Mean square of the joint fit over everything, in N².
+    /// Mean square of the joint fit over the sampled instants, in N².
     pub mean_square: f64,
     /// Mean squares over held-out blocks.
     pub held_out: HeldOut,
@@ -72,9 +72,7 @@ pub fn among(
     let residuals_n = setting.residuals_n(state);
     // Shapes are found on some of the instants; what an effect is worth is judged on all.
     let sampled = setting.sampled();
-    let Some(thin) = sampled.fit_near(state.guesses.clone(), state) else {
-        return Vec::new();
-    };
+    let Some(thin) = sampled.fit_near(state.guesses.clone(), state) else { return Vec::new() };
     let costs: Vec<Option<f64>> = jobs
         .par_iter()
         .map(|(_, guess)| {
@@ -111,9 +109,9 @@ pub fn among(
             if mean_square > (1.0 - LEAST_GAIN) * thin.fit.mean_square {
                 return Some(Trial { guess, mean_square, held_out: before.clone(), log_ratio: 0.0 });
             }
-            let held_out = hold_out(setting, state, &guess)?;
+            let (held_out, is_pressed) = weigh(setting, state, &guess)?;
             let looked_for = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
-            let strained = if is_pressed(setting, state, &guess)? { PRESSED_CHARGE } else { 1.0 };
+            let strained = if is_pressed { PRESSED_CHARGE } else { 1.0 };
             let log_ratio = looked_for * strained * before.log_ratio(&held_out);
             Some(Trial { guess, mean_square, held_out, log_ratio })
         })
@@ -122,19 +120,21 @@ pub fn among(
     trials
 }
 
-/// Whether an amplitude presses against the largest that physics has for it: the data want something else of that shape.
-fn is_pressed(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<bool> {
-    let amplitudes = guess.amplitudes();
-    if amplitudes.is_empty() {
-        return Some(false);
+/// Mean squares over held-out blocks of `state` with one more guess, and whether an amplitude of that presses against the
+/// largest that physics has for it: the data want something else of that shape.
+fn weigh(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<(HeldOut, bool)> {
+    if !guess.only_adds() {
+        return Some((setting.hold_out(&with(setting, state, guess)?)?, false));
     }
-    let fit = if guess.only_adds() { setting.fit_more(state, guess)? } else { with(setting, state, guess)?.fit };
+    let (fit, held_out) = setting.weigh_more(state, guess)?;
+    let amplitudes = guess.amplitudes();
     let own = &fit.amplitudes[fit.amplitudes.len() - amplitudes.len()..];
-    Some(own.iter().zip(amplitudes).any(|(value, amplitude)| {
+    let is_pressed = own.iter().zip(amplitudes).any(|(value, amplitude)| {
         let (low, high) = amplitude.range;
         let near = 1e-3 * (high - low);
         *value > high - near || (low < 0.0 && *value < low + near)
-    }))
+    });
+    Some((held_out, is_pressed))
 }
 
 /// Mean square of the joint fit with one more guess.
@@ -143,15 +143,6 @@ pub fn mean_square(setting: &Setting<'_>, state: &State, guess: &Guess) -> Optio
         setting.fit_more(state, guess).map(|fit| fit.mean_square)
     } else {
         Some(with(setting, state, guess)?.fit.mean_square)
-    }
-}
-
-/// Mean squares over held-out blocks with one more guess.
-pub fn hold_out(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<HeldOut> {
-    if guess.only_adds() {
-        setting.hold_out_more(state, guess)
-    } else {
-        setting.hold_out(&with(setting, state, guess)?)
     }
 }
 
