@@ -89,12 +89,13 @@ pub(crate) fn layout(start: &[u8], n_columns: Option<usize>) -> Layout {
         .take(SAMPLE_ROWS)
         .collect();
     let ranked = SEPARATORS.map(|separator| {
-        let counts: Vec<usize> = rows.iter().map(|row| count(row, separator)).collect();
+        let mut splitter = Splitter::new(separator);
+        let counts: Vec<usize> = rows.iter().map(|row| count(row, separator, &mut splitter)).collect();
         let n_fields = commonest(&counts);
         let n_first = counts.first().copied().unwrap_or(1);
         let alike = counts.iter().filter(|count| **count == n_first).count();
         let expected = n_columns == Some(n_fields);
-        let rank = (expected, n_first > 1, alike, numeric_share(&rows, separator), n_first);
+        let rank = (expected, n_first > 1, alike, numeric_share(&rows, separator, &mut splitter), n_first);
         (rank, Layout { separator, n_fields, space_separated: false })
     });
     let [first, rest @ ..] = ranked;
@@ -105,10 +106,10 @@ pub(crate) fn layout(start: &[u8], n_columns: Option<usize>) -> Layout {
 }
 
 /// Fields of a row; an empty one at its end is the mark of loggers that end a row with a separator.
-fn count(row: &[u8], separator: u8) -> usize {
+fn count(row: &[u8], separator: u8, splitter: &mut Splitter) -> usize {
     // A quote left open is for the reader to refuse.
     let n_plain = || row.iter().filter(|byte| **byte == separator).count() + 1;
-    let n_fields = Splitter::new(separator).split(row).map_or_else(|_| n_plain(), Fields::len);
+    let n_fields = splitter.split(row).map_or_else(|_| n_plain(), Fields::len);
     n_fields - usize::from(n_fields > 1 && row.trim_ascii_end().last().is_none_or(|byte| *byte == separator))
 }
 
@@ -118,9 +119,8 @@ fn commonest(counts: &[usize]) -> usize {
 }
 
 /// Fields below the first row that are numbers, in thousandths.
-fn numeric_share(rows: &[&[u8]], separator: u8) -> usize {
+fn numeric_share(rows: &[&[u8]], separator: u8, splitter: &mut Splitter) -> usize {
     let (mut n_numbers, mut n_fields) = (0, 0);
-    let mut splitter = Splitter::new(separator);
     for row in rows.iter().skip(1) {
         if let Ok(fields) = splitter.split(row) {
             n_fields += fields.len().min(SAMPLE_FIELDS);
