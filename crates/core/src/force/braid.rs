@@ -97,6 +97,8 @@ impl Braid {
 pub struct ComplianceNodes {
     /// Compliances of the columns, in 1/Pa; zero is a node without a column.
     nodes_per_pa: [f64; NODES],
+    /// One over the distances of a node from all others, multiplied; in Paⁿ, with `n` of [`NODES`].
+    scales: [f64; NODES],
 }
 
 impl ComplianceNodes {
@@ -107,7 +109,10 @@ impl ComplianceNodes {
             let angle = PI * (index + 1) as f64 / NODES as f64;
             *node = 0.5 * max_compliance_per_pa * (1.0 - angle.cos());
         }
-        Self { nodes_per_pa }
+        let scales = nodes_per_pa.map(|here| {
+            nodes_per_pa.iter().filter(|&&other| other != here).fold(1.0 / here, |scale, other| scale / (here - other))
+        });
+        Self { nodes_per_pa, scales }
     }
 
     /// Compliances of the columns, in 1/Pa.
@@ -115,22 +120,37 @@ impl ComplianceNodes {
         &self.nodes_per_pa
     }
 
-    /// Weights of the columns at a compliance, and their derivatives by it (1 and Pa).
-    pub fn weights(&self, compliance_per_pa: f64) -> ([f64; NODES], [f64; NODES]) {
-        // Lagrange polynomials as products: exact at the nodes, and no division by a small distance.
-        let all = |index: usize| if index == 0 { 0.0 } else { self.nodes_per_pa[index - 1] };
-        let (mut weights, mut slopes) = ([0.0; NODES], [0.0; NODES]);
-        for column in 0..NODES {
-            let here = all(column + 1);
-            let (mut value, mut slope) = (1.0, 0.0);
-            for other in (0..=NODES).filter(|&other| other != column + 1) {
-                let factor = 1.0 / (here - all(other));
-                slope = slope * (compliance_per_pa - all(other)) * factor + value * factor;
-                value *= (compliance_per_pa - all(other)) * factor;
-            }
-            (weights[column], slopes[column]) = (value, slope);
+    /// Weights of the columns at a compliance.
+    pub fn weights(&self, compliance_per_pa: f64) -> [f64; NODES] {
+        // Lagrange polynomials as products, so that nothing is divided by a small distance: of the distances in front of
+        // a node, then of those behind it.
+        let mut weights = self.scales;
+        let mut product = compliance_per_pa;
+        for (weight, node) in weights.iter_mut().zip(&self.nodes_per_pa) {
+            *weight *= product;
+            product *= compliance_per_pa - node;
         }
-        (weights, slopes)
+        product = 1.0;
+        for (weight, node) in weights.iter_mut().zip(&self.nodes_per_pa).rev() {
+            *weight *= product;
+            product *= compliance_per_pa - node;
+        }
+        weights
+    }
+
+    /// Derivatives of the [weights](Self::weights) by the compliance, in Pa.
+    pub fn weight_slopes(&self, compliance_per_pa: f64) -> [f64; NODES] {
+        let mut slopes = self.scales;
+        for (slope, here) in slopes.iter_mut().zip(&self.nodes_per_pa) {
+            // Value and derivative of the product so far.
+            let (mut product, mut by_compliance) = (compliance_per_pa, 1.0);
+            for other in self.nodes_per_pa.iter().filter(|&other| other != here) {
+                by_compliance = by_compliance * (compliance_per_pa - other) + product;
+                product *= compliance_per_pa - other;
+            }
+            *slope *= by_compliance;
+        }
+        slopes
     }
 }
 
@@ -196,7 +216,7 @@ mod tests {
             let nodes = ComplianceNodes::new(top);
             let scale_n = braid.force_n(5e5, 0.27, top);
             for share in [0.01, 0.1, 0.37, 0.6, 0.93] {
-                let (weights, _) = nodes.weights(share * top);
+                let weights = nodes.weights(share * top);
                 for (pressure_pa, length_m) in [(5e5, 0.27), (5e4, 0.27), (3e5, 0.2)] {
                     let sum_n: f64 = nodes
                         .nodes_per_pa()
@@ -216,9 +236,8 @@ mod tests {
         let nodes = ComplianceNodes::new(2e-9);
         let step = 1e-14;
         for compliance in [0.0, 1e-10, 0.7e-9, 1.9e-9] {
-            let (up, _) = nodes.weights(compliance + step);
-            let (down, _) = nodes.weights(compliance - step);
-            let (_, slopes) = nodes.weights(compliance);
+            let (up, down) = (nodes.weights(compliance + step), nodes.weights(compliance - step));
+            let slopes = nodes.weight_slopes(compliance);
             for index in 0..NODES {
                 let expected = (up[index] - down[index]) / (2.0 * step);
                 assert!((slopes[index] - expected).abs() < 1e-4 * expected.abs().max(1e8), "{compliance:e}");

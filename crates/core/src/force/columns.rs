@@ -102,7 +102,7 @@ impl ForceColumns {
         weights[3] = k3;
         weights[BLADDER] = self.form.bladder_sign() * c10_pa;
         weights[BLADDER + 1] = self.form.bladder_sign() * c01_pa;
-        weights[BRAID..FRICTION].copy_from_slice(&self.nodes.weights(compliance_per_pa).0);
+        weights[BRAID..FRICTION].copy_from_slice(&self.nodes.weights(compliance_per_pa));
         weights[FRICTION] = rubber;
         weights[FRICTION + 1] = strand;
         weights
@@ -118,7 +118,7 @@ impl ForceColumns {
         slopes[Parameter::K3.index()][3] = 1.0;
         slopes[Parameter::C10.index()][BLADDER] = self.form.bladder_sign();
         slopes[Parameter::C01.index()][BLADDER + 1] = self.form.bladder_sign();
-        let (_, by_compliance) = self.nodes.weights(parameters.of(Parameter::StrandCompliance));
+        let by_compliance = self.nodes.weight_slopes(parameters.of(Parameter::StrandCompliance));
         slopes[Parameter::StrandCompliance.index()][BRAID..FRICTION].copy_from_slice(&by_compliance);
         slopes[Parameter::RubberFriction.index()][FRICTION] = 1.0;
         slopes[Parameter::StrandFriction.index()][FRICTION + 1] = 1.0;
