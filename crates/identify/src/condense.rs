@@ -131,12 +131,6 @@ fn condense_stretch(
             next += stride;
         }
     }
-    if filled > 0 {
-        // Close the gaps between the columns of a block that is not full.
-        for column in 1..width {
-            block.copy_within(column * BLOCK_ROWS..column * BLOCK_ROWS + filled, column * filled);
-        }
-        summary.fold(&mut block[..filled * width], filled);
-    }
+    summary.fold_part(&mut block, filled);
     Ok(summary)
 }

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use pam_core::force::columns::{ForceColumns, N_COLUMNS};
 use pam_optim::polish::Residuals;
-use pam_optim::summary::Summary;
+use pam_optim::summary::{SquareSum, Summary};
 use pam_optim::swarm::Axes;
 
 use crate::search_space::SearchSpace;
@@ -25,10 +25,17 @@ pub struct ForceProblem<'a> {
 impl ForceProblem<'_> {
     /// Weights of all columns of the summary at a point of the unit box.
     pub fn weights(&self, x: &[f64]) -> Vec<f64> {
-        let n_free = self.space.free.len();
-        let mut weights = self.columns.weights(&self.space.parameters(&x[..n_free])).to_vec();
-        weights.extend(self.steps.iter().zip(&x[n_free..]).map(|((low, high), x)| low + x * (high - low)));
+        let mut weights = Vec::with_capacity(self.summary.n_columns());
+        self.put_weights(x, &mut weights);
         weights
+    }
+
+    /// As [`weights`](Self::weights), in place of what `weights` holds.
+    fn put_weights(&self, x: &[f64], weights: &mut Vec<f64>) {
+        let n_free = self.space.free.len();
+        weights.clear();
+        weights.extend(self.columns.weights(&self.space.parameters(&x[..n_free])));
+        weights.extend(self.steps.iter().zip(&x[n_free..]).map(|((low, high), x)| low + x * (high - low)));
     }
 
     /// Derivatives of the [weights](Self::weights) by the coordinates: `n_columns × n_parameters`.
@@ -48,7 +55,16 @@ impl ForceProblem<'_> {
 
     /// Mean square of the residual, in N².
     pub fn mean_square(&self, x: &[f64]) -> f64 {
-        self.summary.residual_square_sum(&self.weights(x)) / self.n_rows()
+        self.mean_squares()(x)
+    }
+
+    /// The [mean square](Self::mean_square) as a function to be called many times.
+    pub fn mean_squares(&self) -> impl FnMut(&[f64]) -> f64 {
+        let (square_sum, mut weights) = (SquareSum::of(self.summary), Vec::new());
+        move |x| {
+            self.put_weights(x, &mut weights);
+            square_sum.at(&weights) / self.n_rows()
+        }
     }
 
     fn n_rows(&self) -> f64 {

@@ -16,6 +16,9 @@
 
 use pulp::Arch;
 
+/// Sums that run side by side, in vector registers.
+const LANES: usize = 8;
+
 /// Rows folded at a time: a block of 16 columns stays within 64 kB.
 pub const BLOCK_ROWS: usize = 512;
 
@@ -70,6 +73,18 @@ impl Summary {
         self.annihilate(block, n_rows);
     }
 
+    /// Folds in the first `n_rows` of a block that is laid out for [`BLOCK_ROWS`] rows; it is overwritten.
+    pub fn fold_part(&mut self, block: &mut [f64], n_rows: usize) {
+        if n_rows == 0 {
+            return;
+        }
+        // Close the gaps between the columns.
+        for column in 1..self.width {
+            block.copy_within(column * BLOCK_ROWS..column * BLOCK_ROWS + n_rows, column * n_rows);
+        }
+        self.fold(&mut block[..n_rows * self.width], n_rows);
+    }
+
     /// Folds the rows that `other` stands for in.
     pub fn merge(&mut self, other: &Self) {
         debug_assert_eq!(self.width, other.width);
@@ -93,16 +108,7 @@ impl Summary {
 
     /// `‖y - X w‖²` for weights `w` (`n_columns` of them).
     pub fn residual_square_sum(&self, weights: &[f64]) -> f64 {
-        let mut sum = 0.0;
-        for row in 0..self.n_columns() {
-            let entries = self.row(row);
-            let mut residual = entries[self.width - 1];
-            for column in row..self.n_columns() {
-                residual -= entries[column] * weights[column];
-            }
-            sum += residual * residual;
-        }
-        sum + self.residual_floor_square_sum()
+        SquareSum::of(self).at(weights)
     }
 
     /// `ρ²`: what the best weights leave of `‖y‖²`.
@@ -126,6 +132,52 @@ impl Summary {
             }
         }
         score
+    }
+}
+
+/// The square sum of a [`Summary`], made ready to be asked for many weights: residuals of several rows of the triangle are
+/// worked on side by side.
+#[derive(Debug, Clone)]
+pub struct SquareSum {
+    n_columns: usize,
+    /// For every band of so many rows: `z`, with `ρ` behind it, and then each column that is not zero there.
+    bands: Vec<[f64; LANES]>,
+}
+
+impl SquareSum {
+    /// Of what `summary` stands for.
+    pub fn of(summary: &Summary) -> Self {
+        let n_columns = summary.n_columns();
+        let mut bands = Vec::new();
+        for start in (0..=n_columns).step_by(LANES) {
+            for column in [n_columns].into_iter().chain(start..n_columns) {
+                bands.push(std::array::from_fn(|lane| {
+                    let row = start + lane;
+                    if row <= n_columns { summary.row(row)[column] } else { 0.0 }
+                }));
+            }
+        }
+        Self { n_columns, bands }
+    }
+
+    /// `‖y - X w‖²` for `weights`, as many as the summary has columns.
+    pub fn at(&self, weights: &[f64]) -> f64 {
+        let mut bands = self.bands.iter();
+        let mut squares = [0.0; LANES];
+        let mut start = 0;
+        while let Some(target) = bands.next() {
+            let mut residuals = *target;
+            for (weight, entries) in weights[start.min(self.n_columns)..].iter().zip(bands.by_ref()) {
+                for lane in 0..LANES {
+                    residuals[lane] -= entries[lane] * weight;
+                }
+            }
+            for lane in 0..LANES {
+                squares[lane] += residuals[lane] * residuals[lane];
+            }
+            start += LANES;
+        }
+        squares.iter().sum()
     }
 }
 
@@ -156,10 +208,9 @@ fn reflect(triangle: &mut [f64], width: usize, block: &mut [f64], n_rows: usize)
     }
 }
 
-/// Scalar product in eight partial sums, which the compiler can keep in vector registers.
+/// Scalar product in partial sums.
 #[inline(always)]
 fn dot(left: &[f64], right: &[f64]) -> f64 {
-    const LANES: usize = 8;
     let mut sums = [0.0; LANES];
     let (left_chunks, right_chunks) = (left.chunks_exact(LANES), right.chunks_exact(LANES));
     let rest: f64 = left_chunks.remainder().iter().zip(right_chunks.remainder()).map(|(a, b)| a * b).sum();

@@ -78,7 +78,7 @@ pub fn minimize(
     let mut leader = leader_of(&particles);
     let (mut best, mut best_cost) = (particles[leader].best.clone(), particles[leader].best_cost);
     let mut history = vec![best_cost];
-    let mut scratch = vec![0.0; 2 * n_parameters];
+    let mut scratch = vec![0.0; 3 * n_parameters];
     for iteration in 1..=options.n_iterations {
         for particle in &mut particles {
             particle.advance(&best, axes, &mut scratch);
@@ -145,27 +145,24 @@ impl Particle {
 
     fn advance(&mut self, swarm_best: &[f64], axes: Option<&Axes>, scratch: &mut [f64]) {
         let n = self.place.len();
-        let (own, social) = scratch.split_at_mut(n);
+        let (own, rest) = scratch.split_at_mut(n);
+        let (social, pull) = rest.split_at_mut(n);
         for index in 0..n {
             own[index] = self.best[index] - self.place[index];
             social[index] = swarm_best[index] - self.place[index];
         }
         if let Some(axes) = axes {
-            let pull: Vec<f64> = (0..n)
-                .map(|row| {
-                    let map = &axes.to_round[row * n..(row + 1) * n];
-                    let (mut to_own, mut to_social) = (0.0, 0.0);
-                    for column in 0..n {
-                        to_own += map[column] * own[column];
-                        to_social += map[column] * social[column];
-                    }
-                    self.pull(to_own, to_social)
-                })
-                .collect();
-            for row in 0..n {
-                let map = &axes.from_round[row * n..(row + 1) * n];
-                let along: f64 = map.iter().zip(&pull).map(|(entry, value)| entry * value).sum();
-                self.velocity[row] = CONSTRICTION * (self.velocity[row] + along);
+            for (pull, map) in pull.iter_mut().zip(axes.to_round.chunks_exact(n)) {
+                let (mut to_own, mut to_social) = (0.0, 0.0);
+                for ((entry, own), social) in map.iter().zip(&*own).zip(&*social) {
+                    to_own += entry * own;
+                    to_social += entry * social;
+                }
+                *pull = self.pull(to_own, to_social);
+            }
+            for (velocity, map) in self.velocity.iter_mut().zip(axes.from_round.chunks_exact(n)) {
+                let along: f64 = map.iter().zip(&*pull).map(|(entry, value)| entry * value).sum();
+                *velocity = CONSTRICTION * (*velocity + along);
             }
         } else {
             for index in 0..n {
