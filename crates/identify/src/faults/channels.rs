@@ -124,6 +124,9 @@ pub fn wrong_sign(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
 /// # Errors
 /// Where samples cannot be read back.
 pub fn disagreeing(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> {
+    if gates.len() < 2 {
+        return Ok(None);
+    }
     let highest_pa = gates
         .iter()
         .filter_map(|gate| gate.quality.channel("pressure"))

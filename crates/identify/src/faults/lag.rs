@@ -3,10 +3,11 @@
 //! Force is compared with columns made from pressure (or length) a little earlier or later; the shift that
 //! leaves the least unexplained is the lag. Weights are free, so that no parameter has to be known, and the
 //! direction of motion stays in place, so that hysteresis, which does not depend on the rate, is not taken
-//! for a lag. Only stretches that move fast take part: the others cannot tell.
+//! for a lag. Only stretches that move fast take part: the others cannot tell. A first look at every fourth row
+//! decides whether there is anything to look for.
 
 use pam_core::force::columns::{ForceColumns, N_COLUMNS};
-use pam_optim::summary::Summary;
+use pam_optim::summary::{BLOCK_ROWS, Summary};
 use rayon::prelude::*;
 
 use crate::prepare::Prepared;
@@ -18,6 +19,8 @@ const WINDOW_ROWS: usize = 256;
 const WINDOWS: usize = 12;
 /// Share of the unexplained mean square that the shift must explain to be worth a word.
 const WORTH: f64 = 0.15;
+/// Every so-many-th row takes part in the first look, which must find half of what is worth a word.
+const SKIMMED: usize = 4;
 
 /// A channel that the force lags behind (or runs ahead of, if negative).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +54,11 @@ struct Window {
 pub fn find(recordings: &[Prepared], columns: &ForceColumns) -> std::io::Result<Vec<Lag>> {
     let lags: std::io::Result<Vec<Option<Lag>>> = [Shifted::Pressure, Shifted::Length]
         .into_par_iter()
-        .map(|shifted| Ok(find_one(&fast_windows(recordings, shifted)?, columns, shifted)))
+        .map(|shifted| {
+            let windows = fast_windows(recordings, shifted)?;
+            Ok(find_one(&windows, columns, shifted, SKIMMED, 0.5 * WORTH)
+                .and_then(|_| find_one(&windows, columns, shifted, 1, WORTH)))
+        })
         .collect();
     Ok(lags?.into_iter().flatten().collect())
 }
@@ -106,11 +113,12 @@ fn fast_windows(recordings: &[Prepared], shifted: Shifted) -> std::io::Result<Ve
         .collect()
 }
 
-fn find_one(windows: &[Window], columns: &ForceColumns, shifted: Shifted) -> Option<Lag> {
+/// The lag over every `stride`-th row, where the shift explains more than the share `worth`.
+fn find_one(windows: &[Window], columns: &ForceColumns, shifted: Shifted, stride: usize, worth: f64) -> Option<Lag> {
     if windows.len() < 3 {
         return None;
     }
-    let unexplained = |lag_s: f64| unexplained_rmse_n(windows, columns, shifted, lag_s);
+    let unexplained = |lag_s: f64| unexplained_rmse_n(windows, columns, shifted, stride, lag_s);
     let steps = 4_i32;
     let pitch_s = LARGEST_LAG_S / f64::from(steps);
     let scan: Vec<(f64, f64)> =
@@ -140,65 +148,137 @@ fn find_one(windows: &[Window], columns: &ForceColumns, shifted: Shifted) -> Opt
     let explained = 1.0 - (best.1 / middle).powi(2);
     let period_s = (windows[0].time_s[WINDOW_ROWS - 1] - windows[0].time_s[0]) / (WINDOW_ROWS - 1) as f64;
     let channel = if shifted == Shifted::Pressure { "pressure" } else { "length" };
-    (explained > WORTH && best.0.abs() > 0.5 * period_s.max(2e-3)).then_some(Lag {
+    (explained > worth && best.0.abs() > 0.5 * period_s.max(2e-3)).then_some(Lag {
         channel,
         force_later_s: best.0,
         rmse_n: (middle, best.1),
     })
 }
 
-/// What free weights leave, with the channel taken `lag_s` earlier.
-fn unexplained_rmse_n(windows: &[Window], columns: &ForceColumns, shifted: Shifted, lag_s: f64) -> f64 {
-    let mut summary = Summary::new(N_COLUMNS);
+/// What free weights leave of every `stride`-th row, with the channel taken `lag_s` earlier.
+fn unexplained_rmse_n(windows: &[Window], columns: &ForceColumns, shifted: Shifted, stride: usize, lag_s: f64) -> f64 {
     let width = N_COLUMNS + 1;
+    let mut summary = Summary::new(N_COLUMNS);
+    let mut block = vec![0.0; BLOCK_ROWS * width];
+    let mut filled = 0;
     for window in windows {
         let n = window.time_s.len();
-        let earlier = |values: &[f64], index: usize| {
-            if lag_s == 0.0 {
-                Some(values[index])
-            } else {
-                value_at(&window.time_s, values, window.time_s[index] - lag_s)
-            }
-        };
-        let mut rows: Vec<[f64; N_COLUMNS + 1]> = Vec::with_capacity(n);
-        for index in 0..n {
+        let (first_s, last_s) = (window.time_s[0], window.time_s[n - 1]);
+        let margin_s = 1.25 * LARGEST_LAG_S;
+        let has_margin = last_s - first_s > 3.0 * margin_s;
+        let mut after = 0;
+        for index in (0..n).step_by(stride) {
+            let time_s = window.time_s[index];
             // The same rows for every lag, or the comparison is not fair.
-            let span_s = window.time_s[n - 1] - window.time_s[0];
-            let since_s = window.time_s[index] - window.time_s[0];
-            let margin_s = 1.25 * LARGEST_LAG_S;
-            if span_s > 3.0 * margin_s && (since_s < margin_s || span_s - since_s < margin_s) {
+            if has_margin && (time_s - first_s < margin_s || last_s - time_s < margin_s) {
                 continue;
             }
-            let (pressure_pa, length_m) = match shifted {
-                Shifted::Pressure => (earlier(&window.pressure_pa, index), Some(window.length_m[index])),
-                Shifted::Length => (Some(window.pressure_pa[index]), earlier(&window.length_m, index)),
-            };
-            let (Some(pressure_pa), Some(length_m)) = (pressure_pa, length_m) else { continue };
-            let mut row = [0.0; N_COLUMNS + 1];
-            row[..N_COLUMNS].copy_from_slice(&columns.row(pressure_pa, length_m, window.direction[index]));
-            row[N_COLUMNS] = window.force_n[index];
-            if row.iter().all(|value| value.is_finite()) {
-                rows.push(row);
+            let (mut pressure_pa, mut length_m) = (window.pressure_pa[index], window.length_m[index]);
+            if lag_s != 0.0 {
+                let (values, value) = match shifted {
+                    Shifted::Pressure => (&window.pressure_pa, &mut pressure_pa),
+                    Shifted::Length => (&window.length_m, &mut length_m),
+                };
+                let Some(earlier) = value_at(&window.time_s, values, time_s - lag_s, &mut after) else { continue };
+                *value = earlier;
+            }
+            let row = columns.row(pressure_pa, length_m, window.direction[index]);
+            let force_n = window.force_n[index];
+            if row.iter().all(|value| value.is_finite()) && force_n.is_finite() {
+                for (column, value) in row.into_iter().chain([force_n]).enumerate() {
+                    block[column * BLOCK_ROWS + filled] = value;
+                }
+                filled += 1;
+                if filled == BLOCK_ROWS {
+                    summary.fold(&mut block, filled);
+                    filled = 0;
+                }
             }
         }
-        let mut block = vec![0.0; rows.len() * width];
-        for (index, row) in rows.iter().enumerate() {
-            for (column, value) in row.iter().enumerate() {
-                block[column * rows.len() + index] = *value;
-            }
-        }
-        summary.fold(&mut block, rows.len());
     }
+    summary.fold_part(&mut block, filled);
     (summary.residual_floor_square_sum() / (summary.n_rows().max(1)) as f64).sqrt()
 }
 
-/// Value at a time, on the straight line between its neighbors; none outside the window.
-fn value_at(time_s: &[f64], values: &[f64], at_s: f64) -> Option<f64> {
-    let after = time_s.partition_point(|&time| time < at_s);
-    if after == 0 || after == time_s.len() {
+/// Value at a time, on the straight line between its neighbors; none outside the window. `after`, the first row that is
+/// not before that time, is kept from one time to the next, later one.
+fn value_at(time_s: &[f64], values: &[f64], at_s: f64, after: &mut usize) -> Option<f64> {
+    while *after < time_s.len() && time_s[*after] < at_s {
+        *after += 1;
+    }
+    if *after == 0 || *after == time_s.len() {
         return None;
     }
-    let span_s = time_s[after] - time_s[after - 1];
-    let share = if span_s > 0.0 { (at_s - time_s[after - 1]) / span_s } else { 1.0 };
-    Some(values[after - 1] + share * (values[after] - values[after - 1]))
+    let (before, after) = (*after - 1, *after);
+    let span_s = time_s[after] - time_s[before];
+    let share = if span_s > 0.0 { (at_s - time_s[before]) / span_s } else { 1.0 };
+    Some(values[before] + share * (values[after] - values[before]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    use pam_core::direction::Thresholds;
+    use pam_core::force::{BaseParameters, ForceModel, Form};
+    use pam_core::muscle::MuscleFile;
+    use pam_core::recording::{Recording, Repairs, Samples};
+    use rand::{RngExt, SeedableRng};
+
+    use crate::prepare::{direct, gate};
+
+    /// A muscle shaken at 1 Hz whose force comes later than its pressure, by rows of 5 ms.
+    fn late_by(n_rows: usize) -> (Vec<Prepared>, ForceColumns) {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/muscle-nominal.toml");
+        let muscle = MuscleFile::read(&path).unwrap().muscle;
+        let parameters = BaseParameters { theta: [0.9, 1.05, 2.0, 118.4e3, 105.7e3, 1.0 / 3e9, 1.2e-3, 0.0] };
+        let model = ForceModel::new(&muscle, 3e9, Form::Corrected, parameters);
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(2);
+        let time_s: Vec<f64> = (0..4000).map(|row| 0.005 * f64::from(row)).collect();
+        let pressure_pa: Vec<f64> = time_s.iter().map(|t| 2.5e5 + 1e5 * (std::f64::consts::TAU * t).sin()).collect();
+        let length_m: Vec<f64> = time_s.iter().map(|t| 0.24 + 0.01 * (0.7 * std::f64::consts::TAU * t).sin()).collect();
+        let force_n: Vec<f64> = (0..time_s.len())
+            .map(|row| {
+                let noise_n = generator.random_range(-1.0..1.0);
+                model.force_n(pressure_pa[row.saturating_sub(n_rows)], length_m[row], 0.0) + noise_n
+            })
+            .collect();
+        let samples = Samples::from_columns(&time_s, &pressure_pa, &length_m, &force_n);
+        let segments = vec![0..samples.n_rows(); 1];
+        let (sha256, repairs) = (String::new(), Repairs::default());
+        let recording = Recording {
+            path: "shaken.csv".to_owned(),
+            sha256,
+            samples,
+            segments,
+            repairs,
+            ignored_columns: Vec::new(),
+        };
+        let thresholds = Thresholds { length_m: 1e-4, pressure_pa: 1e3 };
+        let prepared = direct(gate(vec![recording]).unwrap(), thresholds, Form::Corrected).unwrap();
+        (prepared, ForceColumns::new(&muscle, 3e9, Form::Corrected, 3.5e5 * 0.25))
+    }
+
+    #[test]
+    fn a_force_that_comes_later_is_found_and_one_that_does_not_is_left_alone() {
+        let (recordings, columns) = late_by(0);
+        assert_eq!(find(&recordings, &columns).unwrap(), []);
+        let (recordings, columns) = late_by(3);
+        let lags = find(&recordings, &columns).unwrap();
+        let pressure = lags.iter().find(|lag| lag.channel == "pressure").unwrap();
+        assert!((pressure.force_later_s - 0.015).abs() < 5e-4, "{pressure:?}");
+    }
+
+    #[test]
+    fn the_first_look_decides_nothing_but_whether_there_is_a_second() {
+        for n_rows in [0, 1, 2, 5, 9] {
+            let (recordings, columns) = late_by(n_rows);
+            let windows = fast_windows(&recordings, Shifted::Pressure).unwrap();
+            let all_rows = find_one(&windows, &columns, Shifted::Pressure, 1, WORTH);
+            let found = find(&recordings, &columns).unwrap().into_iter().find(|lag| lag.channel == "pressure");
+            assert_eq!(found, all_rows, "{n_rows} rows later");
+            assert_eq!(found.is_some(), n_rows > 0);
+        }
+    }
 }
