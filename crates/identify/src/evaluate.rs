@@ -211,10 +211,14 @@ pub fn noise_floor_n(recordings: &[Prepared], model: &ForceModel) -> Result<f64,
     for prepared in recordings {
         let noise = |name: &str| prepared.quality.channel(name).map_or(0.0, |channel| channel.noise);
         let (noise_pa, noise_m, noise_n) = (noise("pressure"), noise("length"), noise("force"));
-        let trace = trace(prepared, model)?;
-        let stride = (trace.time_s.len() / FLOOR_SAMPLES).max(1);
+        let stride = trace_stride(prepared);
+        let trace = every(
+            prepared,
+            model,
+            stride * (prepared.recording.samples.n_rows().div_ceil(stride) / FLOOR_SAMPLES).max(1),
+        )?;
         let (mut sum, mut count) = (0.0, 0.0);
-        for index in (0..trace.time_s.len()).step_by(stride) {
+        for index in 0..trace.time_s.len() {
             let (pressure_pa, length_m, direction) =
                 (trace.pressure_pa[index], trace.length_m[index], trace.direction[index]);
             let force_n = |p: f64, l: f64| model.force_n(p, l, direction);
@@ -244,8 +248,17 @@ const FLOOR_SAMPLES: usize = 1000;
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn trace(prepared: &Prepared, model: &ForceModel) -> Result<Trace, IdentifyError> {
+    every(prepared, model, trace_stride(prepared))
+}
+
+/// Rows from one sample of a trace to the next.
+fn trace_stride(prepared: &Prepared) -> usize {
+    prepared.recording.samples.n_rows().div_ceil(TRACE_SAMPLES).max(1)
+}
+
+/// Every `stride`-th sample of `prepared` beside what `model` says.
+fn every(prepared: &Prepared, model: &ForceModel, stride: usize) -> Result<Trace, IdentifyError> {
     let samples = &prepared.recording.samples;
-    let stride = samples.n_rows().div_ceil(TRACE_SAMPLES).max(1);
     let mut trace = Trace::default();
     let mut row = 0;
     while row < samples.n_rows() {
@@ -280,7 +293,7 @@ pub fn trace_augmented(
     rest_length_m: f64,
     index: usize,
 ) -> Result<Trace, IdentifyError> {
-    let stride = prepared.recording.samples.n_rows().div_ceil(TRACE_SAMPLES).max(1);
+    let stride = trace_stride(prepared);
     let mut model_n = Vec::new();
     walk_augmented(prepared, model, thresholds, rest_length_m, index, &mut |instant, force_n| {
         if instant.row.is_multiple_of(stride) {
