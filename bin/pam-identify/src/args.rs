@@ -95,7 +95,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     pub(crate) particles: u32,
 
-    /// Moves of each particle.
+    /// Most moves of each particle; a swarm stops before once it no longer gains, unless with --no-polish.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) iterations: u32,
 

@@ -13,7 +13,7 @@ use crate::problem::ForceProblem;
 pub struct FitOptions {
     /// Particles of each swarm.
     pub n_particles: usize,
-    /// Moves of each particle.
+    /// Most moves of each particle; where a descent follows, a swarm that no longer gains stops before.
     pub n_iterations: usize,
     /// Swarms.
     pub n_starts: usize,
@@ -60,8 +60,36 @@ pub struct Fit {
     pub starts: Vec<Start>,
 }
 
-/// Searches the space of `problem`. Starts run in parallel, each with its own streams; `observe` is called after every
-/// move of a swarm.
+/// Tells when a swarm that a descent follows has done its work: it has found the valley, and the descent finds its
+/// bottom in a handful of steps.
+struct Patience {
+    lowest_cost: f64,
+    moves_since: usize,
+}
+
+impl Patience {
+    /// Moves without a gain
+    const MOVES: usize = 20;
+    /// of this share of the cost.
+    const GAIN: f64 = 1e-3;
+
+    fn new() -> Self {
+        Self { lowest_cost: f64::INFINITY, moves_since: 0 }
+    }
+
+    /// Whether it ends after a move that left the best cost at `cost`.
+    fn ends(&mut self, cost: f64) -> bool {
+        if cost < (1.0 - Self::GAIN) * self.lowest_cost {
+            *self = Self { lowest_cost: cost, moves_since: 0 };
+        } else {
+            self.moves_since += 1;
+        }
+        self.moves_since >= Self::MOVES
+    }
+}
+
+/// Searches the space of `problem`. Starts run in parallel, each with its own streams; `observe` is called for every
+/// move of a swarm, and for those that a swarm does not make because it has settled.
 pub fn search(problem: &ForceProblem<'_>, options: &FitOptions, observe: &(dyn Fn() + Sync)) -> Fit {
     let axes = problem.round_axes(&vec![0.5; problem.n_parameters()]);
     let starts: Vec<Start> = (0..options.n_starts.max(1) as u64)
@@ -73,16 +101,23 @@ pub fn search(problem: &ForceProblem<'_>, options: &FitOptions, observe: &(dyn F
                 seed: options.seed,
                 start,
             };
+            let mut patience = Patience::new();
             let swarm = minimize(
                 problem.n_parameters(),
                 axes.as_ref(),
                 &swarm_options,
-                &mut |x| problem.mean_square(x),
-                &mut |_, _| {
+                &mut problem.mean_squares(),
+                &mut |_, cost| {
                     observe();
-                    ControlFlow::Continue(())
+                    if options.polish && patience.ends(cost) {
+                        ControlFlow::Break(())
+                    } else {
+                        ControlFlow::Continue(())
+                    }
                 },
             );
+            // The moves that were not needed.
+            (swarm.history.len()..=options.n_iterations).for_each(|_| observe());
             let polished = options.polish.then(|| descend(problem, &swarm.best));
             Start { swarm, polished }
         })
@@ -102,4 +137,19 @@ pub fn search(problem: &ForceProblem<'_>, options: &FitOptions, observe: &(dyn F
         }
     };
     Fit { x, at_bound, mean_square: winner.mean_square(), converged, starts }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patience_outlasts_gains_and_ends_without_them() {
+        let mut patience = Patience::new();
+        // 1 % less with every tenth move.
+        let cost = |index: i32| 0.99_f64.powi(index / 10);
+        assert!((0..200).all(|index| !patience.ends(cost(index))));
+        // Nine moves since the last gain.
+        assert_eq!((1..).find(|_| patience.ends(cost(199))), Some(Patience::MOVES - 9));
+    }
 }

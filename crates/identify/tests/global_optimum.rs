@@ -3,6 +3,7 @@
 #![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
 
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use pam_core::force::columns::ForceColumns;
 use pam_core::force::{BaseParameters, Form, Parameter};
@@ -78,6 +79,23 @@ fn every_seed_ends_at_the_optimum() {
     );
     assert!(swarms >= 95, "swarm alone: {swarms} of {SEEDS}");
     assert_eq!(polished, SEEDS as usize);
+}
+
+#[test]
+fn a_swarm_stops_once_it_has_settled_unless_no_descent_follows() {
+    let (condensed, columns, space) = shipped();
+    let problem = ForceProblem { summary: &condensed.total, columns: &columns, space: &space, steps: &[] };
+    for polish in [true, false] {
+        let n_observed = AtomicUsize::new(0);
+        let options = FitOptions { polish, ..FitOptions::default() };
+        let fit = search(&problem, &options, &|| {
+            n_observed.fetch_add(1, Ordering::Relaxed);
+        });
+        assert_eq!(n_observed.into_inner(), options.n_starts * options.n_iterations);
+        for start in &fit.starts {
+            assert_eq!(start.swarm.history.len() == options.n_iterations + 1, !polish);
+        }
+    }
 }
 
 #[test]
