@@ -2,10 +2,12 @@
 //!
 //! # Design
 //! Blocks have a fixed size and are summed in their order, so the result does not depend on the number of
-//! threads. Within a block four rows are added at a time: the triangle, which fills the cache, passes through the
-//! processor a quarter as often. A library's matrix product would be chosen by the processor at hand, and with it
-//! the last digits of every weight.
+//! threads. Within a block the triangle is worked on tile by tile: a tile stays in vector registers while all rows of
+//! a batch pass. Every sum runs over the rows in their order and nothing is fused, so that every processor gives the
+//! same bits; a library's matrix product would be chosen by the processor at hand, and with it the last digits of
+//! every weight.
 
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::network::Network;
@@ -13,8 +15,12 @@ use crate::samples::Samples;
 
 /// Samples in a block.
 const BLOCK: usize = 256;
-/// Rows added at a time.
-const ROWS: usize = 4;
+/// Rows of a batch: with 250 parameters they fill 64 kB.
+const ROWS: usize = 32;
+/// Rows of a tile of `JᵀJ`, and vectors side by side in it.
+const TILE: (usize, usize) = (4, 2);
+/// Numbers in the longest vector.
+const MOST_LANES: usize = 8;
 
 /// Sums over samples.
 #[derive(Debug, Clone)]
@@ -51,26 +57,27 @@ impl NormalEquations {
         let n = network.parameters().len();
         let mut sums = Self::zero(n);
         let mut pass = network.pass();
-        let mut rows = vec![0.0; ROWS * n];
-        let mut filled = 0;
-        for index in range {
-            network.forward(&samples.inputs[index], &mut pass);
-            let residual = pass.outputs()[0] - samples.targets[index];
-            let row = &mut rows[filled * n..(filled + 1) * n];
-            network.backward(&mut pass, &[1.0], row);
-            for (sum, derivative) in sums.gradient.iter_mut().zip(row) {
-                *sum += residual * *derivative;
+        // Whole tiles; what is beyond the parameters stays zero.
+        let width = n.next_multiple_of(TILE.1 * MOST_LANES);
+        let mut hessian = vec![0.0; width * width];
+        let mut rows = vec![0.0; ROWS * width];
+        let arch = Arch::new();
+        for batch in range.clone().step_by(ROWS) {
+            let n_rows = ROWS.min(range.end - batch);
+            for (index, row) in (batch..).zip(rows.chunks_exact_mut(width)).take(n_rows) {
+                let row = &mut row[..n];
+                network.forward(&samples.inputs[index], &mut pass);
+                let residual = pass.outputs()[0] - samples.targets[index];
+                network.backward(&mut pass, &[1.0], row);
+                for (sum, derivative) in sums.gradient.iter_mut().zip(row) {
+                    *sum += residual * *derivative;
+                }
+                sums.cost += 0.5 * residual * residual;
             }
-            sums.cost += 0.5 * residual * residual;
-            filled += 1;
-            if filled == ROWS {
-                add_products(&mut sums.hessian, &rows, n);
-                filled = 0;
-            }
+            arch.dispatch(Products { hessian: &mut hessian, rows: &rows[..n_rows * width], width });
         }
-        if filled > 0 {
-            rows[filled * n..].fill(0.0);
-            add_products(&mut sums.hessian, &rows, n);
+        for (line, padded) in sums.hessian.chunks_exact_mut(n).zip(hessian.chunks_exact(width)) {
+            line.copy_from_slice(&padded[..n]);
         }
         sums
     }
@@ -82,17 +89,51 @@ fn add(sum: &mut [f64], terms: &[f64]) {
     }
 }
 
-/// Adds the products of four rows of length `n` with themselves to the upper triangle.
-fn add_products(hessian: &mut [f64], rows: &[f64], n: usize) {
-    let (first, rest) = rows.split_at(n);
-    let (second, rest) = rest.split_at(n);
-    let (third, fourth) = rest.split_at(n);
-    for index in 0..n {
-        let [a, b, c, d] = [first[index], second[index], third[index], fourth[index]];
-        let line = &mut hessian[index * n + index..(index + 1) * n];
-        let columns = first[index..].iter().zip(&second[index..]).zip(&third[index..]).zip(&fourth[index..]);
-        for (sum, (((w, x), y), z)) in line.iter_mut().zip(columns) {
-            *sum += (a * w + b * x) + (c * y + d * z);
+/// Adds the products of `rows`, each of length `width`, with themselves to the upper triangle of `hessian`.
+struct Products<'a> {
+    hessian: &'a mut [f64],
+    rows: &'a [f64],
+    width: usize,
+}
+
+impl WithSimd for Products<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { hessian, rows, width } = self;
+        let across = TILE.1 * S::F64_LANES;
+        for top in (0..width).step_by(TILE.0) {
+            for left in (top / across * across..width).step_by(across) {
+                let mut tile = [[simd.splat_f64s(0.0); TILE.1]; TILE.0];
+                for row in rows.chunks_exact(width) {
+                    let (terms, _) = S::as_simd_f64s(&row[left..left + across]);
+                    let (Some(&terms), Some(&factors)) = (terms.first_chunk(), row[top..].first_chunk()) else { break };
+                    add_product(simd, &mut tile, factors, terms);
+                }
+                for (line, terms) in hessian[top * width..].chunks_mut(width).zip(tile) {
+                    let (sums, _) = S::as_mut_simd_f64s(&mut line[left..left + across]);
+                    for (sum, term) in sums.iter_mut().zip(terms) {
+                        *sum = simd.add_f64s(*sum, term);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds the products of `factors` and `terms` to a tile, nothing fused.
+#[inline(always)]
+fn add_product<S: Simd>(
+    simd: S,
+    tile: &mut [[S::f64s; TILE.1]; TILE.0],
+    factors: [f64; TILE.0],
+    terms: [S::f64s; TILE.1],
+) {
+    for (line, factor) in tile.iter_mut().zip(factors) {
+        let factor = simd.splat_f64s(factor);
+        for (sum, term) in line.iter_mut().zip(terms) {
+            *sum = simd.add_f64s(*sum, simd.mul_f64s(factor, term));
         }
     }
 }
