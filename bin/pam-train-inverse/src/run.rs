@@ -100,9 +100,12 @@ pub(crate) struct Timing {
     pub(crate) exact_max_pa: f64,
 }
 
-/// Times both inverses on the points that were judged.
+/// Points that both inverses are timed on: some ten milliseconds.
+const TIMED: usize = 2000;
+
+/// Times both inverses on points that were judged.
 fn time(outcome: &Outcome, prepared: &Prepared) -> Timing {
-    let points = || outcome.judged.iter().map(|judged| judged.point).take(20_000);
+    let points = || outcome.judged.iter().map(|judged| judged.point).take(TIMED);
     let n = u32::try_from(points().count()).unwrap_or(u32::MAX).max(1);
     let start = Instant::now();
     let mut sum = 0.0;

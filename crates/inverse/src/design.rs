@@ -8,6 +8,7 @@
 //! `g⁴ = g + 1`, after Roberts (2018), "The unreasonable effectiveness of quasirandom sequences"; `x_0` is drawn.
 
 use rand::RngExt as _;
+use rayon::prelude::*;
 
 use crate::ExactInverse;
 use crate::stream::Stream;
@@ -55,12 +56,15 @@ pub fn points(inverse: &ExactInverse, n: usize, draw: Draw, seed: u64) -> Vec<Po
             ((share - 0.5) * (1.0 + 2.0 * OVERHANG) + 0.5).clamp(0.0, 1.0)
         })
     };
-    (0..n)
-        .filter_map(|index| {
-            let [p, l, s] = match draw {
-                Draw::Design => coordinates(index),
-                Draw::Independent => std::array::from_fn(|_| random.random_range(0.0..1.0)),
-            };
+    let drawn: Vec<[f64; 3]> = (0..n)
+        .map(|index| match draw {
+            Draw::Design => coordinates(index),
+            Draw::Independent => std::array::from_fn(|_| random.random_range(0.0..1.0)),
+        })
+        .collect();
+    drawn
+        .into_par_iter()
+        .filter_map(|[p, l, s]| {
             let direction = match draw {
                 Draw::Design => ((s - 0.5) * 2.0 / BETWEEN).clamp(-1.0, 1.0),
                 Draw::Independent => (s - 0.5_f64).signum(),

@@ -2,6 +2,8 @@
 
 use pam_core::artifact::inverse::{ErrorReport, ErrorStatistics, RegionErrors};
 
+use rayon::prelude::*;
+
 use crate::coverage::coverage;
 use crate::design::{Draw, Point, points};
 use crate::{ExactInverse, InverseNetwork};
@@ -25,7 +27,7 @@ pub struct Judged {
 /// Judges a network on `n` independent points.
 pub fn judge(network: &InverseNetwork, exact: &ExactInverse, n: usize, seed: u64) -> Vec<Judged> {
     points(exact, n, Draw::Independent, seed)
-        .into_iter()
+        .into_par_iter()
         .map(|point| {
             let Point { pressure_pa, length_m, direction, force_n } = point;
             let answer = network.pressure_pa(force_n, length_m, direction);
