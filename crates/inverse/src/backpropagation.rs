@@ -33,21 +33,21 @@ impl Backpropagation {
     /// One epoch. Gives the cost `½ Σ r²` as the samples met it on their way.
     pub fn epoch(&mut self, network: &mut Network, samples: &Samples) -> f64 {
         let mut pass = network.pass();
-        let mut gradient = vec![0.0; network.parameters().len()];
+        let mut gradient = vec![[0.0]; network.parameters().len()];
         let mut cost = 0.0;
         match self.update {
             Update::Sample => {
                 self.order.shuffle(&mut self.random);
                 for &index in &self.order {
                     cost += derive(network, &mut pass, samples, index, &mut gradient);
-                    descend(network, self.learning_rate, &gradient);
+                    descend(network, self.learning_rate, gradient.as_flattened());
                 }
             }
             Update::Epoch => {
                 let mut sum = vec![0.0; gradient.len()];
                 for index in 0..samples.len() {
                     cost += derive(network, &mut pass, samples, index, &mut gradient);
-                    for (sum, term) in sum.iter_mut().zip(&gradient) {
+                    for (sum, term) in sum.iter_mut().zip(gradient.as_flattened()) {
                         *sum += term;
                     }
                 }
@@ -59,10 +59,10 @@ impl Backpropagation {
 }
 
 /// Gradient of one sample's cost, and the cost.
-fn derive(network: &Network, pass: &mut Pass, samples: &Samples, index: usize, gradient: &mut [f64]) -> f64 {
-    network.forward(&samples.inputs[index], pass);
-    let residual = pass.outputs()[0] - samples.targets[index];
-    network.backward(pass, &[residual], gradient);
+fn derive(network: &Network, pass: &mut Pass<1>, samples: &Samples, index: usize, gradient: &mut [[f64; 1]]) -> f64 {
+    network.forward(&samples.inputs[index].map(|input| [input]), pass);
+    let residual = pass.outputs()[0][0] - samples.targets[index];
+    network.backward(pass, &[[residual]], gradient);
     0.5 * residual * residual
 }
 

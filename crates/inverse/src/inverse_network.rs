@@ -170,9 +170,11 @@ mod tests {
         let inverse = untrained();
         let mut pass = inverse.network().pass();
         for (force_n, length_m, direction) in [(100.0, 0.25, 1.0), (40.0, 0.22, -1.0), (5000.0, 0.1, 0.0)] {
-            inverse.network().forward(&inverse.scaling().inputs(force_n, length_m, direction), &mut pass);
+            inverse
+                .network()
+                .forward(&inverse.scaling().inputs(force_n, length_m, direction).map(|input| [input]), &mut pass);
             let output = &inverse.scaling().output;
-            let expected_pa = output.offset + output.scale * pass.outputs()[0];
+            let expected_pa = output.offset + output.scale * pass.outputs()[0][0];
             assert_eq!(inverse.pressure_pa(force_n, length_m, direction).pressure_pa, expected_pa);
         }
     }

@@ -30,6 +30,7 @@ const MOST_DAMPING: f64 = 1e12;
 pub struct LevenbergMarquardt {
     damping: Option<f64>,
     growth: f64,
+    sums: NormalEquations,
 }
 
 /// What came of an epoch.
@@ -43,7 +44,7 @@ pub enum Step {
 
 impl Default for LevenbergMarquardt {
     fn default() -> Self {
-        Self { damping: None, growth: 2.0 }
+        Self { damping: None, growth: 2.0, sums: NormalEquations::default() }
     }
 }
 
@@ -51,18 +52,18 @@ impl LevenbergMarquardt {
     /// One epoch: moves the network by a step that lowers the cost `½ Σ r²`, if there is one.
     pub fn epoch(&mut self, network: &mut Network, samples: &Samples) -> Step {
         let n = network.parameters().len();
-        let sums = NormalEquations::of(network, samples);
+        self.sums.sum(network, samples);
+        let sums = self.sums.all();
         if !sums.cost.is_finite() {
             return Step::Stuck;
         }
-        let diagonal = (0..n).map(|index| sums.hessian[index * n + index]).fold(0.0, f64::max);
+        let diagonal = (0..n).map(|index| sums.hessian(index, index)).fold(0.0, f64::max);
         let mut damping = self.damping.unwrap_or(FIRST_DAMPING * diagonal);
-        // The upper triangle by rows is the lower one by columns, which is what the factorization reads.
-        let hessian = DMatrix::from_column_slice(n, n, &sums.hessian);
         let gradient = DVector::from_column_slice(&sums.gradient);
         let mut moved = network.clone();
         for _ in 0..MOST_FAILURES {
-            let mut damped = hessian.clone();
+            // The factorization reads the lower triangle.
+            let mut damped = DMatrix::from_fn(n, n, |row, column| sums.hessian(column.min(row), row));
             for index in 0..n {
                 damped[(index, index)] += damping;
             }
@@ -122,8 +123,8 @@ mod tests {
         let mut samples = saddle(50);
         let mut pass = network_to_fit.pass();
         for (target, inputs) in samples.targets.iter_mut().zip(&samples.inputs) {
-            network_to_fit.forward(inputs, &mut pass);
-            *target = pass.outputs()[0];
+            network_to_fit.forward(&inputs.map(|input| [input]), &mut pass);
+            *target = pass.outputs()[0][0];
         }
         let mut network = network_to_fit.clone();
         assert_eq!(LevenbergMarquardt::default().epoch(&mut network, &samples), Step::Stuck);

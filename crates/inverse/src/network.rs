@@ -31,18 +31,19 @@ pub struct Network {
     parameters: Vec<f64>,
 }
 
-/// What one pass through a network leaves behind, for the way back.
+/// What one pass of `N` samples side by side through a network leaves behind, for the way back. Every sample is worked on
+/// as if it were alone, to the last bit.
 #[derive(Debug, Clone)]
-pub struct Pass {
+pub struct Pass<const N: usize> {
     /// Answers of every layer, the input first.
-    answers: Vec<Vec<f64>>,
+    answers: Vec<Vec<[f64; N]>>,
     /// Derivatives by the sums of every layer after the input.
-    deltas: Vec<Vec<f64>>,
+    deltas: Vec<Vec<[f64; N]>>,
 }
 
-impl Pass {
+impl<const N: usize> Pass<N> {
     /// Answers of the last layer.
-    pub fn outputs(&self) -> &[f64] {
+    pub fn outputs(&self) -> &[[f64; N]] {
         self.answers.last().map_or(&[], Vec::as_slice)
     }
 }
@@ -118,30 +119,36 @@ impl Network {
     }
 
     /// Room for passes through this network.
-    pub fn pass(&self) -> Pass {
-        let answers: Vec<Vec<f64>> = self.layers.iter().map(|&width| vec![0.0; width]).collect();
+    pub fn pass<const N: usize>(&self) -> Pass<N> {
+        let answers: Vec<Vec<[f64; N]>> = self.layers.iter().map(|&width| vec![[0.0; N]; width]).collect();
         Pass { deltas: answers[1..].to_vec(), answers }
     }
 
     /// Runs `inputs` through the layers, eqs 13 and 14; the answer is [`Pass::outputs`].
-    pub fn forward(&self, inputs: &[f64], pass: &mut Pass) {
+    pub fn forward<const N: usize>(&self, inputs: &[[f64; N]], pass: &mut Pass<N>) {
         pass.answers[0].copy_from_slice(inputs);
         for (layer, &activation) in self.activations.iter().enumerate() {
             let (weights, biases) = self.layer(layer);
             let (before, after) = pass.answers.split_at_mut(layer + 1);
             let rows = weights.chunks_exact(self.layers[layer]);
-            for ((answer, row), bias) in after[0].iter_mut().zip(rows).zip(biases) {
-                let sum: f64 = row.iter().zip(&before[layer]).map(|(weight, input)| weight * input).sum();
-                *answer = value(activation, sum + bias);
+            for ((answers, row), bias) in after[0].iter_mut().zip(rows).zip(biases) {
+                let mut sums = [0.0; N];
+                for (weight, inputs) in row.iter().zip(&before[layer]) {
+                    for (sum, input) in sums.iter_mut().zip(inputs) {
+                        *sum += weight * input;
+                    }
+                }
+                *answers = sums.map(|sum| value(activation, sum + bias));
             }
         }
     }
 
     /// Writes `Σ_j seeds_j ∂y_j/∂θ` into `gradient`, for the outputs `y` of the last [`forward`](Self::forward).
-    pub fn backward(&self, pass: &mut Pass, seeds: &[f64], gradient: &mut [f64]) {
+    pub fn backward<const N: usize>(&self, pass: &mut Pass<N>, seeds: &[[f64; N]], gradient: &mut [[f64; N]]) {
         let last = self.activations.len() - 1;
         for ((delta, seed), answer) in pass.deltas[last].iter_mut().zip(seeds).zip(&pass.answers[last + 1]) {
-            *delta = seed * slope_at_answer(self.activations[last], *answer);
+            *delta = *seed;
+            scale_by_slope(self.activations[last], answer, delta);
         }
         for layer in (0..=last).rev() {
             let n_inputs = self.layers[layer];
@@ -151,22 +158,33 @@ impl Network {
             let deltas = &deltas[0];
             for (row, delta) in gradient[weights_at].chunks_exact_mut(n_inputs).zip(deltas) {
                 for (derivative, input) in row.iter_mut().zip(&pass.answers[layer]) {
-                    *derivative = delta * input;
+                    for ((derivative, delta), input) in derivative.iter_mut().zip(delta).zip(input) {
+                        *derivative = delta * input;
+                    }
                 }
             }
             gradient[biases_at].copy_from_slice(deltas);
             if let Some(before) = deltas_before.last_mut() {
-                before.fill(0.0);
+                before.fill([0.0; N]);
                 for (row, delta) in weights.chunks_exact(n_inputs).zip(deltas) {
                     for (sum, weight) in before.iter_mut().zip(row) {
-                        *sum += delta * weight;
+                        for (sum, delta) in sum.iter_mut().zip(delta) {
+                            *sum += delta * weight;
+                        }
                     }
                 }
                 for (sum, answer) in before.iter_mut().zip(&pass.answers[layer]) {
-                    *sum *= slope_at_answer(self.activations[layer - 1], *answer);
+                    scale_by_slope(self.activations[layer - 1], answer, sum);
                 }
             }
         }
+    }
+}
+
+/// Multiplies `values` with the slopes of neurons at their answers.
+fn scale_by_slope<const N: usize>(activation: Activation, answers: &[f64; N], values: &mut [f64; N]) {
+    for (value, answer) in values.iter_mut().zip(answers) {
+        *value *= slope_at_answer(activation, *answer);
     }
 }
 
@@ -196,16 +214,16 @@ mod tests {
         use Activation::{Linear, Sigmoid, Tanh};
         for (hidden, output) in [(Tanh, Linear), (Sigmoid, Sigmoid), (Sigmoid, Linear), (Tanh, Sigmoid)] {
             let network = network(hidden, output);
-            let inputs = [0.3, -0.8, 1.0];
-            let seeds = [0.7, -1.3];
+            let inputs = [[0.3], [-0.8], [1.0]];
+            let seeds = [[0.7], [-1.3]];
             let cost = |network: &Network| -> f64 {
                 let mut pass = network.pass();
                 network.forward(&inputs, &mut pass);
-                pass.outputs().iter().zip(seeds).map(|(output, seed)| output * seed).sum()
+                pass.outputs().iter().zip(seeds).map(|(output, seed)| output[0] * seed[0]).sum()
             };
             let mut pass = network.pass();
             network.forward(&inputs, &mut pass);
-            let mut gradient = vec![f64::NAN; network.parameters().len()];
+            let mut gradient = vec![[f64::NAN]; network.parameters().len()];
             network.backward(&mut pass, &seeds, &mut gradient);
             for (index, derivative) in gradient.iter().enumerate() {
                 let shifted = |step: f64| {
@@ -214,7 +232,7 @@ mod tests {
                     cost(&moved)
                 };
                 let expected = (shifted(1e-6) - shifted(-1e-6)) / 2e-6;
-                assert!((derivative - expected).abs() < 1e-8, "{hidden:?} {output:?} {index}");
+                assert!((derivative[0] - expected).abs() < 1e-8, "{hidden:?} {output:?} {index}");
             }
         }
     }
@@ -225,7 +243,24 @@ mod tests {
         let parameters = vec![2.0, -1.0, 0.1, 3.0, -1.0];
         let network = Network::new(vec![2, 1, 1], vec![Activation::Tanh, Activation::Linear], parameters);
         let mut pass = network.pass();
-        network.forward(&[0.5, 0.25], &mut pass);
-        assert!((pass.outputs()[0] - (3.0 * 0.85_f64.tanh() - 1.0)).abs() < 1e-15);
+        network.forward(&[[0.5], [0.25]], &mut pass);
+        assert!((pass.outputs()[0][0] - (3.0 * 0.85_f64.tanh() - 1.0)).abs() < 1e-15);
+    }
+    #[test]
+    fn samples_side_by_side_do_not_see_each_other() {
+        let network = network(Activation::Tanh, Activation::Sigmoid);
+        let inputs = [[0.3, -0.9, 0.0], [-0.8, 0.1, 0.5], [1.0, -1.0, 0.2]];
+        let seeds = [[0.7, 1.0, -0.1], [-1.3, 2.0, 0.0]];
+        let n = network.parameters().len();
+        let (mut pass, mut gradient) = (network.pass(), vec![[0.0; 3]; n]);
+        network.forward(&inputs, &mut pass);
+        network.backward(&mut pass, &seeds, &mut gradient);
+        let (mut alone, mut gradient_alone) = (network.pass(), vec![[0.0]; n]);
+        for sample in 0..3 {
+            network.forward(&inputs.map(|input| [input[sample]]), &mut alone);
+            network.backward(&mut alone, &seeds.map(|seed| [seed[sample]]), &mut gradient_alone);
+            assert!(pass.outputs().iter().zip(alone.outputs()).all(|(side, alone)| side[sample] == alone[0]));
+            assert!(gradient.iter().zip(&gradient_alone).all(|(side, alone)| side[sample] == alone[0]));
+        }
     }
 }

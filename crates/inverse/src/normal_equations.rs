@@ -7,10 +7,12 @@
 //! same bits; a library's matrix product would be chosen by the processor at hand, and with it the last digits of
 //! every weight.
 
+use std::ops::Range;
+
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::network::Network;
+use crate::network::{Network, Pass};
 use crate::samples::Samples;
 
 /// Samples in a block.
@@ -22,64 +24,100 @@ const TILE: (usize, usize) = (4, 2);
 /// Numbers in the longest vector.
 const MOST_LANES: usize = 8;
 
+/// Samples that pass through the network side by side.
+const SIDE_BY_SIDE: usize = 8;
+
 /// Sums over samples.
 #[derive(Debug, Clone)]
-pub(crate) struct NormalEquations {
-    /// `JᵀJ`, `n × n` row by row; the upper triangle is filled.
-    pub(crate) hessian: Vec<f64>,
+pub(crate) struct Sums {
+    /// `JᵀJ`, row by row, each as long as whole tiles; the upper triangle is filled.
+    hessian: Vec<f64>,
+    /// Length of these rows.
+    width: usize,
     /// `Jᵀr`.
     pub(crate) gradient: Vec<f64>,
     /// `½ Σ r²`.
     pub(crate) cost: f64,
 }
 
-impl NormalEquations {
+impl Sums {
     fn zero(n: usize) -> Self {
-        Self { hessian: vec![0.0; n * n], gradient: vec![0.0; n], cost: 0.0 }
-    }
-
-    /// Sums over all samples, the residual being output less target.
-    pub(crate) fn of(network: &Network, samples: &Samples) -> Self {
-        let blocks: Vec<Self> = (0..samples.len().div_ceil(BLOCK))
-            .into_par_iter()
-            .map(|block| Self::of_block(network, samples, block * BLOCK..((block + 1) * BLOCK).min(samples.len())))
-            .collect();
-        let mut sum = Self::zero(network.parameters().len());
-        for block in &blocks {
-            add(&mut sum.hessian, &block.hessian);
-            add(&mut sum.gradient, &block.gradient);
-            sum.cost += block.cost;
-        }
-        sum
-    }
-
-    fn of_block(network: &Network, samples: &Samples, range: std::ops::Range<usize>) -> Self {
-        let n = network.parameters().len();
-        let mut sums = Self::zero(n);
-        let mut pass = network.pass();
-        // Whole tiles; what is beyond the parameters stays zero.
         let width = n.next_multiple_of(TILE.1 * MOST_LANES);
-        let mut hessian = vec![0.0; width * width];
+        Self { hessian: vec![0.0; width * width], width, gradient: vec![0.0; n], cost: 0.0 }
+    }
+
+    /// An element of the upper triangle of `JᵀJ`.
+    pub(crate) fn hessian(&self, row: usize, column: usize) -> f64 {
+        self.hessian[row * self.width + column]
+    }
+
+    fn sum(&mut self, network: &Network, samples: &Samples, range: Range<usize>) {
+        let (n, width) = (self.gradient.len(), self.width);
+        self.hessian.fill(0.0);
+        self.gradient.fill(0.0);
+        self.cost = 0.0;
+        let mut pass = network.pass();
+        let mut derivatives = vec![[0.0; SIDE_BY_SIDE]; n];
+        // What is beyond the parameters stays zero.
         let mut rows = vec![0.0; ROWS * width];
         let arch = Arch::new();
-        for batch in range.clone().step_by(ROWS) {
-            let n_rows = ROWS.min(range.end - batch);
-            for (index, row) in (batch..).zip(rows.chunks_exact_mut(width)).take(n_rows) {
-                let row = &mut row[..n];
-                network.forward(&samples.inputs[index], &mut pass);
-                let residual = pass.outputs()[0] - samples.targets[index];
-                network.backward(&mut pass, &[1.0], row);
-                for (sum, derivative) in sums.gradient.iter_mut().zip(row) {
-                    *sum += residual * *derivative;
+        let mut filled = 0;
+        for first in range.clone().step_by(SIDE_BY_SIDE) {
+            let residuals = residuals(network, samples, first, &mut pass);
+            network.backward(&mut pass, &[[1.0; SIDE_BY_SIDE]], &mut derivatives);
+            for (lane, residual) in residuals.into_iter().enumerate().take(range.end - first) {
+                let row = &mut rows[filled * width..][..n];
+                for ((entry, sum), derivative) in row.iter_mut().zip(&mut self.gradient).zip(&derivatives) {
+                    *entry = derivative[lane];
+                    *sum += residual * derivative[lane];
                 }
-                sums.cost += 0.5 * residual * residual;
+                self.cost += 0.5 * residual * residual;
+                filled += 1;
             }
-            arch.dispatch(Products { hessian: &mut hessian, rows: &rows[..n_rows * width], width });
+            if filled == ROWS || first + SIDE_BY_SIDE >= range.end {
+                arch.dispatch(Products { hessian: &mut self.hessian, rows: &rows[..filled * width], width });
+                filled = 0;
+            }
         }
-        for (line, padded) in sums.hessian.chunks_exact_mut(n).zip(hessian.chunks_exact(width)) {
-            line.copy_from_slice(&padded[..n]);
+    }
+}
+
+/// Output less target of as many samples as fit side by side, from `first` on; the last ones stand for those that are
+/// missing.
+fn residuals(network: &Network, samples: &Samples, first: usize, pass: &mut Pass<SIDE_BY_SIDE>) -> [f64; SIDE_BY_SIDE] {
+    let at: [usize; SIDE_BY_SIDE] = std::array::from_fn(|lane| (first + lane).min(samples.len() - 1));
+    let inputs: [[f64; SIDE_BY_SIDE]; 3] = std::array::from_fn(|input| at.map(|index| samples.inputs[index][input]));
+    network.forward(&inputs, pass);
+    std::array::from_fn(|lane| pass.outputs()[0][lane] - samples.targets[at[lane]])
+}
+
+/// Sums block by block, in room that is kept from one epoch to the next.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct NormalEquations {
+    /// The first ends up with all of them.
+    blocks: Vec<Sums>,
+}
+
+impl NormalEquations {
+    /// Sums over all samples, the residual being output less target.
+    pub(crate) fn sum(&mut self, network: &Network, samples: &Samples) {
+        let n = network.parameters().len();
+        self.blocks.resize_with(samples.len().div_ceil(BLOCK).max(1), || Sums::zero(n));
+        self.blocks.par_iter_mut().enumerate().for_each(|(index, block)| {
+            block.sum(network, samples, index * BLOCK..((index + 1) * BLOCK).min(samples.len()));
+        });
+        if let Some((all, others)) = self.blocks.split_first_mut() {
+            for block in others {
+                add(&mut all.hessian, &block.hessian);
+                add(&mut all.gradient, &block.gradient);
+                all.cost += block.cost;
+            }
         }
-        sums
+    }
+
+    /// What the last [`sum`](Self::sum) found.
+    pub(crate) fn all(&self) -> &Sums {
+        &self.blocks[0]
     }
 }
 
@@ -145,10 +183,11 @@ pub(crate) fn cost(network: &Network, samples: &Samples) -> f64 {
         .map(|block| {
             let mut pass = network.pass();
             let mut sum = 0.0;
-            for index in block * BLOCK..((block + 1) * BLOCK).min(samples.len()) {
-                network.forward(&samples.inputs[index], &mut pass);
-                let residual = pass.outputs()[0] - samples.targets[index];
-                sum += 0.5 * residual * residual;
+            let end = ((block + 1) * BLOCK).min(samples.len());
+            for first in (block * BLOCK..end).step_by(SIDE_BY_SIDE) {
+                for residual in residuals(network, samples, first, &mut pass).into_iter().take(end - first) {
+                    sum += 0.5 * residual * residual;
+                }
             }
             sum
         })
@@ -173,15 +212,20 @@ mod tests {
             inputs: (0..n_samples).map(wave).collect(),
             targets: (0..n_samples).map(|index| (0.7 * index as f64).cos()).collect(),
         };
-        let sums = NormalEquations::of(&network, &samples);
+        let mut equations = NormalEquations::default();
+        equations.sum(&network, &samples);
+        // Nothing is left of what was summed before.
+        equations.sum(&network, &samples);
+        let sums = equations.all();
         let n = network.parameters().len();
         let (mut hessian, mut gradient, mut total) = (vec![0.0; n * n], vec![0.0; n], 0.0);
         let mut pass = network.pass();
-        let mut row = vec![0.0; n];
+        let mut row = vec![[0.0]; n];
         for (inputs, target) in samples.inputs.iter().zip(&samples.targets) {
-            network.forward(inputs, &mut pass);
-            let residual = pass.outputs()[0] - target;
-            network.backward(&mut pass, &[1.0], &mut row);
+            network.forward(&inputs.map(|input| [input]), &mut pass);
+            let residual = pass.outputs()[0][0] - target;
+            network.backward(&mut pass, &[[1.0]], &mut row);
+            let row = row.as_flattened();
             for i in 0..n {
                 gradient[i] += row[i] * residual;
                 for j in 0..n {
@@ -193,7 +237,7 @@ mod tests {
         for i in 0..n {
             assert!((sums.gradient[i] - gradient[i]).abs() < 1e-9);
             for j in i..n {
-                assert!((sums.hessian[i * n + j] - hessian[i * n + j]).abs() < 1e-9);
+                assert!((sums.hessian(i, j) - hessian[i * n + j]).abs() < 1e-9);
             }
         }
         assert!((sums.cost - total).abs() < 1e-9);
