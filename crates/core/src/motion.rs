@@ -13,7 +13,8 @@ use crate::recording::Recording;
 
 /// Half of the window of the parabola that rates come from, in s; at least four samples and at most fifty to either side.
 pub const HALF_WINDOW_S: f64 = 0.04;
-/// The same for the values themselves, which need less smoothing than their rates.
+/// The same for the values themselves, which need less smoothing than their rates, and for the acceleration, which lasts
+/// no longer where a rig starts or stops.
 pub const HALF_VALUE_WINDOW_S: f64 = 0.02;
 
 /// One row of a recording with everything that effects need.
@@ -66,8 +67,10 @@ pub fn walk(
         let mut by_pressure_m = 0.0;
         let mut at = 0;
         while at < rows.time_s.len() {
-            let [pressure, length, force] = [&rows.pressure_pa, &rows.length_m, &rows.force_n]
-                .map(|channel| Parabola { value: near.parabola(channel, at).value, ..window.parabola(channel, at) });
+            let [pressure, length, force] = [&rows.pressure_pa, &rows.length_m, &rows.force_n].map(|channel| {
+                let Parabola { value, curvature, .. } = near.parabola(channel, at);
+                Parabola { value, curvature, ..window.parabola(channel, at) }
+            });
             let row = segment.start + at;
             let (step_s, pressure_step_pa) = last
                 .map_or((0.0, 0.0), |(time_s, pressure_pa)| (rows.time_s[at] - time_s, pressure.value - pressure_pa));
@@ -143,6 +146,35 @@ impl Rows {
     }
 }
 
+/// Weights with which the acceleration of an [`Instant`] averages the true one over the rows around, at a period of
+/// `period_s`: a force that is to be compared with it has to be averaged alike. They are symmetric and sum to one.
+///
+/// The curvature of a parabola is a weighted sum of values; summing those weights up twice gives the weights of second
+/// differences.
+pub fn acceleration_weights(period_s: f64) -> Vec<f64> {
+    let half = half_rows(HALF_VALUE_WINDOW_S, period_s) as i32;
+    let rows = -half..=half;
+    let mean = rows.clone().map(|u| f64::from(u * u)).sum::<f64>() / f64::from(2 * half + 1);
+    let (mut slope, mut weight) = (0.0, 0.0);
+    // The first and the last would be zero: a straight line has no curvature.
+    let weights: Vec<f64> = rows
+        .map(|u| {
+            weight += slope;
+            slope += f64::from(u * u) - mean;
+            weight
+        })
+        .skip(1)
+        .take(2 * half as usize - 1)
+        .collect();
+    let sum: f64 = weights.iter().sum();
+    weights.iter().map(|weight| weight / sum).collect()
+}
+
+/// Half of a window of `half_s` to either side, in rows.
+fn half_rows(half_s: f64, period_s: f64) -> usize {
+    ((half_s / period_s).round() as usize).clamp(4, 50)
+}
+
 /// A channel around one row.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Parabola {
@@ -167,7 +199,7 @@ impl Window {
     fn over(time_s: &[f64], half_s: f64) -> Self {
         let n_rows = time_s.len();
         let period_s = if n_rows > 1 { (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1) as f64 } else { 1.0 };
-        let half = ((half_s / period_s).round() as usize).clamp(4, 50);
+        let half = half_rows(half_s, period_s);
         let h = half as f64;
         let sum2 = h * (h + 1.0) * (2.0 * h + 1.0) / 3.0;
         let sum4 = sum2 * (3.0 * h * h + 3.0 * h - 1.0) / 5.0;
@@ -242,6 +274,28 @@ impl Still {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_acceleration_is_the_true_one_averaged() {
+        let period_s = 0.005;
+        let weights = acceleration_weights(period_s);
+        let half = weights.len() / 2;
+        assert!(weights.iter().all(|weight| *weight > 0.0));
+        // Second differences of any row of numbers are its accelerations.
+        let channel: Vec<f64> = (0..60).map(|row| f64::from(row * row * 37 % 101)).collect();
+        let window =
+            Window::over(&(0..60).map(|row| f64::from(row) * period_s).collect::<Vec<_>>(), HALF_VALUE_WINDOW_S);
+        let averaged: f64 = weights
+            .iter()
+            .enumerate()
+            .map(|(index, weight)| {
+                let at = 30 + index - half;
+                weight * (channel[at + 1] - 2.0 * channel[at] + channel[at - 1]) / (period_s * period_s)
+            })
+            .sum();
+        let found = window.parabola(&channel, 30).curvature;
+        assert!((found / averaged - 1.0).abs() < 1e-12, "{found} {averaged}");
+    }
 
     #[test]
     fn a_parabola_is_found_exactly_up_to_the_ends() {

@@ -175,6 +175,7 @@ mod tests {
             ("N s/m", "_n_s_per_m"),
             ("Pa", "_pa"),
             ("kg", "_kg"),
+            ("Hz", "_hz"),
         ];
         for effect in CATALOGUE {
             let id = effect.page().id;

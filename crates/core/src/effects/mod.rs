@@ -46,6 +46,7 @@ mod viscous_damping;
 
 pub use augmented::{AugmentedMemory, AugmentedModel, Term};
 pub use catalogue::{CATALOGUE, effect};
+pub use inertia::Mount;
 pub use moment::{Base, Moment};
 pub use page::{Page, Symbol};
 
