@@ -170,6 +170,9 @@ pub fn acceleration_weights(period_s: f64) -> Vec<f64> {
     weights.iter().map(|weight| weight / sum).collect()
 }
 
+/// Rows to either side that a slope comes from at least.
+const LEAST_HALF: usize = 2;
+
 /// Half of a window of `half_s` to either side, in rows.
 fn half_rows(half_s: f64, period_s: f64) -> usize {
     ((half_s / period_s).round() as usize).clamp(4, 50)
@@ -233,9 +236,24 @@ impl Window {
         let u = at as f64 - center as f64;
         Parabola {
             value: origin + c0 + c1 * u + c2 * u * u,
-            slope: (c1 + 2.0 * c2 * u) / self.period_s,
+            slope: if u == 0.0 { c1 / self.period_s } else { self.slope_near_end(channel, at) },
             curvature: 2.0 * c2 / (self.period_s * self.period_s),
         }
+    }
+
+    /// The slope at a row nearer to an end than half a window: that of the widest window around it, where the parabola
+    /// carried on would make a turn in it twice the turn that it is. The last two rows take that of their neighbor.
+    fn slope_near_end(&self, channel: &[f64], at: usize) -> f64 {
+        let last = channel.len() - 1;
+        let center = at.clamp(LEAST_HALF, last - LEAST_HALF);
+        let half = self.half.min(center).min(last - center);
+        let (mut first, mut squares) = (0.0, 0.0);
+        for u in 1..=half {
+            let distance = u as f64;
+            first += distance * (channel[center + u] - channel[center - u]);
+            squares += 2.0 * distance * distance;
+        }
+        first / (squares * self.period_s)
     }
 }
 
@@ -306,8 +324,20 @@ mod tests {
             let t = time_s[at];
             let found = window.parabola(&channel, at);
             assert!((found.value - channel[at]).abs() < 1e-12);
+            let t = t.clamp(time_s[LEAST_HALF], time_s[59 - LEAST_HALF]);
             assert!((found.slope - (10.0 * t - 2.0)).abs() < 1e-9);
             assert!((found.curvature - 10.0).abs() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn a_start_just_before_the_end_is_no_faster_than_it_is() {
+        let time_s: Vec<f64> = (0..60).map(|row| f64::from(row) * 0.005).collect();
+        let channel: Vec<f64> = (0..60).map(|row| f64::from(row - 55).max(0.0)).collect();
+        let window = Window::over(&time_s, HALF_WINDOW_S);
+        for at in 0..60 {
+            let slope = window.parabola(&channel, at).slope;
+            assert!((-1e-9..=200.0 + 1e-9).contains(&slope), "{at}: {slope}");
         }
     }
 }

@@ -181,7 +181,8 @@ pub trait Effect: Sync {
 
 /// What an effect remembers from moment to moment.
 ///
-/// At the first moment, and at the first one behind a gap (`step_s == 0`), a memory is settled.
+/// At the first moment a memory is settled. Behind a gap (`step_s == 0`), what slides is settled as well; what fades with time
+/// has gone on.
 pub trait Memory: Send {
     /// Changes pressure or length from what the channels say to what the muscle sees.
     fn sees(&mut self, _now: &mut Moment) {}

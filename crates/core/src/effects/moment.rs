@@ -174,8 +174,8 @@ pub(super) mod tests {
     }
 
     /// Columns of a pull, zero where the effect has fewer.
-    pub(in super::super) fn pull(memory: &mut dyn Memory, now: &Moment, base: &Base) -> [f64; 2] {
-        let mut columns = [0.0; 2];
+    pub(in super::super) fn pull(memory: &mut dyn Memory, now: &Moment, base: &Base) -> [f64; 3] {
+        let mut columns = [0.0; 3];
         memory.pulls(now, base, &mut columns);
         columns
     }
