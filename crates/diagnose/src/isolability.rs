@@ -60,7 +60,7 @@ static TYPICAL: [Typical; 22] = [
     Typical { id: "load-dependent-friction", shapes: &[&[]], amplitudes: &[0.03] },
     Typical { id: "viscous-damping", shapes: &[&[]], amplitudes: &[100.0, 100.0] },
     Typical { id: "viscoelastic-relaxation", shapes: &[&[3.0]], amplitudes: &[0.1, 0.1, 0.1] },
-    Typical { id: "pressure-creep", shapes: &[&[3.0]], amplitudes: &[0.025, 0.025, 0.025] },
+    Typical { id: "pressure-creep", shapes: &[&[3.0, 0.0], &[3.0, 1.0]], amplitudes: &[0.025, 0.025, 0.025] },
     Typical { id: "mullins-softening", shapes: &[&[0.03]], amplitudes: &[0.06] },
     Typical { id: "thermal-softening", shapes: &[&[400.0]], amplitudes: &[0.1] },
     Typical { id: "fatigue-wear", shapes: &[&[0.5], &[1.0]], amplitudes: &[0.02] },

@@ -181,8 +181,8 @@ pub trait Effect: Sync {
 
 /// What an effect remembers from moment to moment.
 ///
-/// At the first moment a memory is settled. Behind a gap (`step_s == 0`), what slides is settled as well; what fades with time
-/// has gone on.
+/// At the first moment of a recording a memory is settled. A gap (`step_s == 0`) is crossed: what fades with time has gone on,
+/// what slides has come straight from where it was.
 pub trait Memory: Send {
     /// Changes pressure or length from what the channels say to what the muscle sees.
     fn sees(&mut self, _now: &mut Moment) {}

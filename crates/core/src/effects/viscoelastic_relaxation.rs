@@ -28,7 +28,7 @@ impl Effect for ViscoelasticRelaxation {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "time_constant_s", unit: "s", range: (0.02, 300.0), grid: &[0.03, 0.1, 0.3, 1.0, 3.0, 10.0] }]
+        &[Shape { name: "time_constant_s", unit: "s", range: (0.02, 300.0), grid: &[0.03, 0.2, 1.0, 6.0] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
