@@ -6,7 +6,7 @@
 
 use std::io;
 
-use crate::direction::{Direction, STANDSTILL_S, Thresholds};
+use crate::direction::{Direction, Thresholds};
 use crate::effects::Moment;
 use crate::effects::moment::SLIDE_M_PER_PA;
 use crate::recording::Recording;
@@ -62,8 +62,12 @@ pub fn walk(
         let origin_s = *first_s.get_or_insert(begin_s);
         let window = Window::over(&rows.time_s, HALF_WINDOW_S);
         let near = Window::over(&rows.time_s, HALF_VALUE_WINDOW_S);
+        let average = Average::over(&rows.time_s);
         let still = Still::of(&rows, &window, thresholds.length_m);
         let mut last: Option<(f64, f64)> = None;
+        let noise = average.share_of_noise() * NOISE_PER_THRESHOLD;
+        let mut contraction = Onward::new(noise * thresholds.length_m);
+        let mut slide = Onward::new(noise * (thresholds.length_m + SLIDE_M_PER_PA * thresholds.pressure_pa));
         let mut by_pressure_m = 0.0;
         let mut at = 0;
         while at < rows.time_s.len() {
@@ -72,13 +76,16 @@ pub fn walk(
                 Parabola { value, curvature, ..window.parabola(channel, at) }
             });
             let row = segment.start + at;
-            let (step_s, pressure_step_pa) = last
-                .map_or((0.0, 0.0), |(time_s, pressure_pa)| (rows.time_s[at] - time_s, pressure.value - pressure_pa));
+            let average_pa = average.at(&rows.pressure_pa, at);
+            let (step_s, pressure_step_pa) =
+                last.map_or((0.0, 0.0), |(time_s, pressure_pa)| (rows.time_s[at] - time_s, average_pa - pressure_pa));
             let resting = still.at(at);
             if resting {
                 by_pressure_m += SLIDE_M_PER_PA * pressure_step_pa;
             }
-            last = Some((rows.time_s[at], pressure.value));
+            last = Some((rows.time_s[at], average_pa));
+            let contraction_m = contraction.follow(rest_length_m - average.at(&rows.length_m, at));
+            let slide_m = slide.follow(rest_length_m - average.at(&rows.length_m, at) + by_pressure_m);
             let smooth = channels == Channels::Smooth;
             let choose = |smooth_value: f64, recorded: f64| if smooth { smooth_value } else { recorded };
             let force_n = choose(force.value, rows.force_n.get(at).copied().unwrap_or(0.0));
@@ -91,12 +98,13 @@ pub fn walk(
                     pressure_pa: choose(pressure.value, rows.pressure_pa[at]),
                     pressure_rate_pa_per_s: pressure.slope,
                     length_m: choose(length.value, rows.length_m[at]),
-                    contraction_ratio: (rest_length_m - length.value) / rest_length_m,
+                    contraction_ratio: contraction_m / rest_length_m,
                     speed_m_per_s: -length.slope,
                     slide_speed_m_per_s: if resting { SLIDE_M_PER_PA * pressure.slope } else { -length.slope },
                     acceleration_m_per_s2: -length.curvature,
                     direction: direction.sign(row),
-                    slide_m: rest_length_m - length.value + by_pressure_m,
+                    came: false,
+                    slide_m,
                     force_n: force.value,
                 },
                 force_n,
@@ -188,6 +196,73 @@ struct Parabola {
     curvature: f64,
 }
 
+/// An average with positive weights, for what remembers its path: a parabola overshoots behind a step, which would be a
+/// reversal that never was.
+struct Average {
+    weights: Vec<f64>,
+}
+
+impl Average {
+    fn over(time_s: &[f64]) -> Self {
+        Self { weights: acceleration_weights(period_s(time_s)) }
+    }
+
+    fn at(&self, channel: &[f64], at: usize) -> f64 {
+        let half = self.weights.len() / 2;
+        let origin = channel[at];
+        let sum: f64 = self
+            .weights
+            .iter()
+            .enumerate()
+            .map(|(index, weight)| {
+                weight * (channel[(at + index).max(half).min(half + channel.len() - 1) - half] - origin)
+            })
+            .sum();
+        origin + sum
+    }
+
+    /// Deviation of an average over that of the white noise of its rows.
+    fn share_of_noise(&self) -> f64 {
+        self.weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
+    }
+}
+
+/// Six deviations of the noise, from peak to peak, over a threshold of the direction, which is five.
+const NOISE_PER_THRESHOLD: f64 = 1.2;
+
+/// What follows a channel but does not turn back for its noise: to what remembers its path, noise at rest would be a way to
+/// and fro. It has no lag while it goes on one way.
+struct Onward {
+    /// A way back that is none.
+    noise: f64,
+    position: f64,
+    /// ±1; 0 before the first move.
+    way: f64,
+}
+
+impl Onward {
+    fn new(noise: f64) -> Self {
+        Self { noise, position: f64::NAN, way: 0.0 }
+    }
+
+    fn follow(&mut self, to: f64) -> f64 {
+        let by = to - self.position;
+        if by.is_nan() {
+            self.position = to;
+        } else if by * self.way > 0.0 || by.abs() > self.noise {
+            self.position = to;
+            self.way = by.signum();
+        }
+        self.position
+    }
+}
+
+/// Time between evenly sampled rows, in s.
+fn period_s(time_s: &[f64]) -> f64 {
+    let n_rows = time_s.len();
+    if n_rows > 1 { (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1) as f64 } else { 1.0 }
+}
+
 /// The window of the parabola over evenly sampled rows.
 struct Window {
     half: usize,
@@ -201,7 +276,7 @@ struct Window {
 impl Window {
     fn over(time_s: &[f64], half_s: f64) -> Self {
         let n_rows = time_s.len();
-        let period_s = if n_rows > 1 { (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1) as f64 } else { 1.0 };
+        let period_s = period_s(time_s);
         let half = half_rows(half_s, period_s);
         let h = half as f64;
         let sum2 = h * (h + 1.0) * (2.0 * h + 1.0) / 3.0;
@@ -257,6 +332,10 @@ impl Window {
     }
 }
 
+/// Time to either side in which a length that stands still does not move, in s. The direction waits for longer, because it is
+/// wrong for long where it is wrong; what slides under pressure slides at once.
+const STILL_S: f64 = 0.1;
+
 /// Where the length stands still: it moves by less than a threshold within the time around.
 struct Still {
     /// Smooth lengths at every `every` rows.
@@ -272,7 +351,7 @@ impl Still {
         let every = window.half;
         let lengths =
             (0..rows.length_m.len()).step_by(every).map(|at| window.parabola(&rows.length_m, at).value).collect();
-        let reach = ((0.5 * STANDSTILL_S / (every as f64 * window.period_s)).ceil() as usize).clamp(1, 20);
+        let reach = ((STILL_S / (every as f64 * window.period_s)).ceil() as usize).clamp(1, 20);
         Self { lengths, every, reach, threshold_m }
     }
 
@@ -328,6 +407,23 @@ mod tests {
             assert!((found.slope - (10.0 * t - 2.0)).abs() < 1e-9);
             assert!((found.curvature - 10.0).abs() < 1e-7);
         }
+    }
+
+    #[test]
+    fn an_average_of_a_step_never_turns_back() {
+        let time_s: Vec<f64> = (0..60).map(|row| f64::from(row) * 0.005).collect();
+        let channel: Vec<f64> = (0..60).map(|row| if row < 30 { 0.0 } else { 1.0 }).collect();
+        let average = Average::over(&time_s);
+        let path: Vec<f64> = (0..60).map(|at| average.at(&channel, at)).collect();
+        assert!(path.windows(2).all(|pair| pair[1] >= pair[0]));
+        assert_eq!((path[0], path[59]), (0.0, 1.0));
+    }
+
+    #[test]
+    fn noise_at_rest_is_no_way_back() {
+        let mut onward = Onward::new(0.3);
+        let path: Vec<f64> = [0.0, 1.0, 2.0, 1.9, 2.1, 1.85, 2.05, 1.5, 1.6, 1.0].map(|to| onward.follow(to)).into();
+        assert_eq!(path, [0.0, 1.0, 2.0, 2.0, 2.1, 2.1, 2.1, 1.5, 1.5, 1.0]);
     }
 
     #[test]

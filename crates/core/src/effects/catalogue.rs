@@ -286,6 +286,7 @@ mod tests {
                         slide_speed_m_per_s: generator.random_range(-0.1..0.1),
                         acceleration_m_per_s2: generator.random_range(-50.0..50.0),
                         direction: [-1.0, 0.0, 1.0][index % 3],
+                        came: index % 2 == 0,
                         slide_m: generator.random_range(-0.01..0.1),
                         force_n: generator.random_range(-50.0..900.0),
                     };

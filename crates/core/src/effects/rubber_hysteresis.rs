@@ -49,9 +49,7 @@ impl Memory for State {
     fn pulls(&mut self, now: &Moment, _base: &Base, columns: &mut [f64]) {
         // Rubber that is not stretched has no loop: pressure alone moves nothing.
         let contraction_m = now.contraction_ratio * self.rest_length_m;
-        // Where the length stands still, the direction is that of the pressure: nothing tells where the length came from.
-        let came = if now.slide_speed_m_per_s == now.speed_m_per_s { now.direction } else { 0.0 };
-        columns[0] = -self.follower.follow(now, contraction_m, came);
+        columns[0] = -self.follower.follow(now, contraction_m, now.direction);
     }
 }
 

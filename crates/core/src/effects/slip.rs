@@ -61,12 +61,12 @@ impl Follower {
         Self { distance, slip: None }
     }
 
-    /// The share of the full force, in [-1, 1], where `position` has been reached `now`. A recording begins slipped in
-    /// `direction`; a gap in it is crossed straight.
+    /// The share of the full force, in [-1, 1], where `position` has been reached `now`. The muscle came
+    /// in `direction`, or from nowhere in particular; a gap in a recording is crossed straight.
     pub(super) fn follow(&mut self, now: &Moment, position: f64, direction: f64) -> f64 {
         let mut slip = match self.slip {
             Some((recording, slip)) if recording == now.recording => slip,
-            _ => Slip::settled(self.distance, position, direction),
+            _ => Slip::settled(self.distance, position, if now.came { direction } else { 0.0 }),
         };
         let share = slip.move_to(position);
         self.slip = Some((now.recording, slip));
