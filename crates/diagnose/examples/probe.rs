@@ -2,10 +2,9 @@
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "an example")]
 
 use pam_core::artifact::ModelArtifact;
-use pam_core::force::columns::ForceColumns;
 use pam_core::recording::{ReadOptions, read_recording};
-use pam_diagnosis::search::{Limits, chance, search};
-use pam_diagnosis::state::Setting;
+use pam_diagnosis::question::{Answer, Question};
+use pam_diagnosis::search::{Limits, chance};
 use pam_diagnosis::track::Track;
 use pam_identification::prepare::{direct, gate};
 
@@ -16,24 +15,14 @@ fn main() {
         arguments.map(|path| read_recording(std::path::Path::new(&path), &ReadOptions::default()).unwrap()).collect();
     let begin = std::time::Instant::now();
     let gates = gate(recordings).unwrap();
-    let largest = gates.iter().map(|gate| gate.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
     let prepared = direct(gates, model.direction, model.form).unwrap();
     let track = Track::of(&prepared, model.direction, model.geometry.rest_length_m).unwrap();
-    let columns = ForceColumns::new(&model.geometry, model.strand_modulus_pa, model.form, largest);
-    let space = pam_diagnosis::base::search_space(&model, &columns);
-    let start = pam_diagnosis::base::coordinates(&model, &space);
-    let setting = Setting {
-        track: &track,
-        columns: &columns,
-        space: &space,
-        muscle: &model.geometry,
-        strand_modulus_pa: model.strand_modulus_pa,
-        only: None,
-    };
     println!("{} instants, {} counted, {} blocks", track.n(), track.n_counted(), track.blocks.len());
     let limits =
         Limits { max_effects: 4, excluded: Vec::new(), matters_above_n: None, sensor_floor_n: model.fit.noise_floor_n };
-    let found = search(&setting, &start, &model.force_model(), &limits, &|| {}).unwrap();
+    let question = Question::new(&prepared, &model, limits);
+    let Answer { track, found, knocks, sizes } = question.answer(track, &|| {}).unwrap();
+    let setting = question.setting(&track);
     println!(
         "base {:.3} N, floor {:.3} N, sensor floor {:.3} N",
         found.base.held_out.mean_square().sqrt(),
@@ -85,11 +74,12 @@ fn main() {
     if let Some(left) = &found.left {
         println!("left unnamed: {:.3} N", left.held_out.mean_square().sqrt());
     }
-    let sizes = pam_diagnosis::verdict::Sizes::of(&found, &limits);
-    let verdict = pam_diagnosis::verdict::verdict(&found, &sizes);
+    println!("knocks {knocks:?}");
+    let verdict = pam_diagnosis::verdict::verdict(&found, &sizes, knocks.is_some());
     let alternatives: Vec<Vec<&str>> =
         (0..found.taken.len()).map(|i| pam_diagnosis::verdict::alternatives(&found, i)).collect();
-    let names: Vec<&str> = found.best.state.guesses.iter().map(|guess| guess.id()).collect();
+    let mut names: Vec<&str> = found.best.state.guesses.iter().map(|guess| guess.id()).collect();
+    names.extend(knocks.iter().map(|_| pam_diagnosis::knocks::ID));
     let firsts: Vec<String> = found
         .first
         .iter()

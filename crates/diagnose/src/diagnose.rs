@@ -8,19 +8,19 @@ use pam_core::artifact::diagnosis::{
 use pam_core::artifact::model::EffectEntry;
 use pam_core::effects::{AugmentedModel, Term};
 use pam_core::force::ForceModel;
-use pam_core::force::columns::ForceColumns;
 use pam_core::recording::Recording;
 use pam_identification::evaluate::evaluate;
 use pam_identification::prepare::Prepared;
 
-use crate::base;
 use crate::check;
 use crate::error::DiagnoseError;
 use crate::isolability::isolability;
 use crate::joint::HeldOut;
+use crate::knocks::{self, Knocks};
 use crate::next_experiment::{Setpoints, next_experiment};
+use crate::question::{Answer, Question};
 use crate::regions::concentrated;
-use crate::search::{Found, Limits, chance, search};
+use crate::search::{Found, Limits, chance};
 use crate::state::Setting;
 use crate::structure::Remainder;
 use crate::track::Track;
@@ -121,26 +121,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
     let track = Track::of(&estimation, model.direction, model.geometry.rest_length_m)?;
     check::long_enough(&track, &estimation)?;
-    let largest_n_per_m =
-        estimation.iter().map(|prepared| prepared.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
-    let columns = ForceColumns::new(&model.geometry, model.strand_modulus_pa, model.form, largest_n_per_m);
-    let space = base::search_space(&model, &columns);
-    let setting = Setting {
-        track: &track,
-        columns: &columns,
-        space: &space,
-        muscle: &model.geometry,
-        strand_modulus_pa: model.strand_modulus_pa,
-        only: None,
-    };
     let limits = Limits {
         max_effects: config.max_effects,
         excluded: config.excluded.clone(),
         matters_above_n: config.matters_above_n,
         sensor_floor_n: model.fit.noise_floor_n,
     };
-    let undetermined = || DiagnoseError::Undetermined { path: estimation[0].recording.path.clone() };
-    let start = base::coordinates(&model, &space);
     // Reading the channels, each look, and what is said of the outcome; a search may end early.
     let (steps, done) = (config.max_effects as u64 + 3, std::cell::Cell::new(1));
     let advance = || {
@@ -148,27 +134,38 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         observer(done.get(), steps);
     };
     observer(done.get(), steps);
-    let found = search(&setting, &start, &model.force_model(), &limits, &advance).ok_or_else(undetermined)?;
+    let question = Question::new(&estimation, &model, limits);
+    let Answer { track, found, knocks, sizes } = question.answer(track, &advance)?;
+    let setting = question.setting(&track);
+    let space = &question.space;
     observer(steps - 1, steps);
-    let folds = setting.fold_fits(&found.best.state).ok_or_else(undetermined)?;
-    let uncertainty = Uncertainty::of(&folds, &space);
-    let sizes = Sizes::of(&found, &limits);
-    let verdict = verdict(&found, &sizes);
+    let state = &found.best.state;
+    let undetermined = || DiagnoseError::Undetermined { path: estimation[0].recording.path.clone() };
+    let folds = setting.fold_fits(state).ok_or_else(undetermined)?;
+    let uncertainty = Uncertainty::of(&folds, space);
+    let verdict = verdict(&found, &sizes, knocks.is_some());
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
 
-    let (effects, entries) = named(&setting, &found, &uncertainty);
-    let regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
+    let (mut effects, mut entries) = named(&setting, &found, &uncertainty);
+    let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
+    let mut terms = terms(state);
+    if let Some(knocks) = &knocks {
+        let named = knocking(knocks);
+        entries.push(EffectEntry { id: named.id.clone(), parameters: named.parameters.clone() });
+        effects.push(named);
+        effects.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
+        terms.push(knocks.term());
+        regions.insert(if effects[0].id == knocks::ID { 0 } else { regions.len() }, knocks.region(sizes.mismatch_n));
+    }
     let unexplained = if verdict == Verdict::Unexplained {
         structured(&setting, &found.best.state, &found, &paths)
     } else {
         Vec::new()
     };
-    let state = &found.best.state;
     let correlated = correlated_instants(&setting, &setting.residuals_n(state));
     let isolability =
         isolability(&setting, &found.base.state, sizes.floor_n, track.n_counted() as f64 / correlated.max(1.0));
     let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain);
-    let terms = terms(state);
     let diagnosis = Diagnosis {
         verdict,
         statement: words::statement(verdict, &effects, &sizes, &regions, &unexplained),
@@ -177,7 +174,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         unexplained_share: sizes.share_left(),
         unexplained,
         implausible: implausible(&setting, &found),
-        candidates: candidates(&found),
+        candidates: candidates(&found, knocks.is_some()),
         isolability,
         next_experiment,
         sizes,
@@ -195,6 +192,20 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     Ok(diagnosis)
 }
 
+/// The mass behind `knocks`.
+fn knocking(knocks: &Knocks) -> NamedEffect {
+    let page = Knocks::effect().page();
+    NamedEffect {
+        id: page.id.to_owned(),
+        name: page.name.to_owned(),
+        equation: page.equation.to_owned(),
+        parameters: knocks.entries(),
+        evidence: evidence(&knocks.without, &knocks.with, 1),
+        alternatives: Vec::new(),
+        separating_test: page.test.to_owned(),
+    }
+}
+
 /// The base model that leaves less on the recordings at their full rate: as it was identified, if that was on these, or as
 /// refitted on the grid. What effects buy is never measured against the worse one.
 fn better_base(
@@ -210,7 +221,7 @@ fn better_base(
 }
 
 /// Effects with their values, as a model evaluates them.
-fn terms(state: &crate::state::State) -> Vec<Term> {
+pub fn terms(state: &crate::state::State) -> Vec<Term> {
     let mut at = 0;
     state
         .guesses
@@ -278,7 +289,7 @@ fn named(setting: &Setting<'_>, found: &Found, uncertainty: &Uncertainty) -> (Ve
 }
 
 /// What became of every candidate of the first look.
-fn candidates(found: &Found) -> Vec<Candidate> {
+fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
     let base = found.base.held_out.mean_square();
     let mismatch = (base - found.floor_square).max(f64::MIN_POSITIVE);
     let taken: Vec<&str> = found.best.state.guesses.iter().map(crate::hypothesis::Guess::id).collect();
@@ -289,7 +300,7 @@ fn candidates(found: &Found) -> Vec<Candidate> {
         .map(|trial| {
             let id = trial.guess.id();
             let explains = ((base - trial.held_out.mean_square()) / mismatch).clamp(0.0, 1.0);
-            let outcome = if taken.contains(&id) {
+            let outcome = if taken.contains(&id) || (knocks && id == knocks::ID) {
                 "named".to_owned()
             } else if rivals.contains(&id) {
                 "cannot be told from what was named".to_owned()

@@ -254,6 +254,7 @@ impl Path {
                         },
                         acceleration_m_per_s2: bend * muscle.rest_length_m / (step_s * step_s),
                         direction,
+                        came: true,
                         slide_m,
                         force_n: 0.0,
                     },

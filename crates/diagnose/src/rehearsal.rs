@@ -117,6 +117,7 @@ impl Rehearsal {
                 },
                 acceleration_m_per_s2: -(after.2 - 2.0 * here.2 + before.2) / HALF_CORNER_S.powi(2),
                 direction: point.direction,
+                came: true,
                 slide_m: muscle.rest_length_m - here.2 + slide_by_pressure_m,
                 force_n: force_n(reach.model, here.1, here.2, point.direction),
             };

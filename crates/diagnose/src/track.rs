@@ -11,6 +11,8 @@ use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
 use rayon::prelude::*;
 
+use crate::knocks::Knocks;
+
 /// Time between instants, in s, as long as there are fewer than [`MOST_INSTANTS`].
 const PERIOD_S: f64 = 0.02;
 /// Instants of all recordings together, at most; longer recordings are thinned further.
@@ -102,19 +104,37 @@ impl Track {
             track.recordings.push(first..first + rows);
             track.instants.extend(instants);
         }
-        track.counted = track
-            .instants
-            .iter()
-            .map(|instant| instant.settled && instant.force_n.is_finite() && instant.moment.pressure_pa.is_finite())
-            .collect();
-        let stride = (track.n_counted() / LEAST_SAMPLED).clamp(1, MOST_SPARSE);
-        track.sampled = track.counted.clone();
-        for range in &track.recordings {
+        let counts = |instant: &Instant| {
+            instant.settled && instant.force_n.is_finite() && instant.moment.pressure_pa.is_finite()
+        };
+        track.counted = track.instants.iter().map(counts).collect();
+        track.sample();
+        Ok(track)
+    }
+
+    /// Thins out what counts.
+    fn sample(&mut self) {
+        let stride = (self.n_counted() / LEAST_SAMPLED).clamp(1, MOST_SPARSE);
+        self.sampled = self.counted.clone();
+        for range in &self.recordings {
             for at in range.clone().filter(|at| (at - range.start) % stride != 0) {
-                track.sampled[at] = false;
+                self.sampled[at] = false;
             }
         }
-        Ok(track)
+    }
+
+    /// The same, but what `knocks` touch does not count.
+    #[must_use]
+    pub fn without(mut self, knocks: &Knocks) -> Self {
+        for (recording, rows) in &knocks.touched {
+            let range = self.recordings[*recording].clone();
+            let within = &self.instants[range.clone()];
+            let first = within.partition_point(|instant| instant.row < rows.start);
+            let last = within.partition_point(|instant| instant.row < rows.end);
+            self.counted[range.start + first..range.start + last].fill(false);
+        }
+        self.sample();
+        self
     }
 
     /// Instants.

@@ -116,6 +116,19 @@ pub fn correlated_instants(setting: &Setting<'_>, residuals_n: &[f64]) -> f64 {
     total
 }
 
+/// Entry of an artifact for one parameter, SI.
+pub fn entry(name: &str, unit: &str, value: f64, range: (f64, f64), stderr: Option<f64>) -> ParameterEntry {
+    let rim = 1e-6 * (range.1 - range.0);
+    let at_bound = value <= range.0 + rim || value >= range.1 - rim;
+    ParameterEntry {
+        name: name.to_owned(),
+        value,
+        unit: unit.to_owned(),
+        stderr,
+        status: if at_bound { ParameterStatus::AtBound } else { ParameterStatus::Fitted },
+    }
+}
+
 /// Entries of an artifact for effect `index`: shapes, then amplitudes from position `first` on.
 pub fn entries(
     state: &State,
@@ -125,20 +138,6 @@ pub fn entries(
     uncertainty: &Uncertainty,
 ) -> Vec<ParameterEntry> {
     let guess = &state.guesses[index];
-    let entry = |name: &str, unit: &str, value: f64, range: (f64, f64), stderr: Option<f64>| {
-        let rim = 1e-6 * (range.1 - range.0);
-        ParameterEntry {
-            name: name.to_owned(),
-            value,
-            unit: unit.to_owned(),
-            stderr,
-            status: if value <= range.0 + rim || value >= range.1 - rim {
-                ParameterStatus::AtBound
-            } else {
-                ParameterStatus::Fitted
-            },
-        }
-    };
     let shapes = guess.effect.shape().iter().zip(&guess.shape).zip(shape_errors).map(|((shape, &value), &stderr)| {
         let found = entry(shape.name, shape.unit, value, shape.range, stderr);
         // When and where an event happened has no bound of physics.

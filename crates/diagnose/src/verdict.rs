@@ -2,6 +2,7 @@
 
 use pam_core::artifact::diagnosis::Verdict;
 
+use crate::knocks::Knocks;
 use crate::search::{Found, Limits, Taken};
 
 /// Sizes that the verdict rests on, root mean square over held-out blocks, in N.
@@ -49,17 +50,21 @@ impl Sizes {
         }
     }
 
+    /// The same where `knocks` were explained besides.
+    pub fn with(self, knocks: &Knocks) -> Self {
+        Self { mismatch_n: self.mismatch_n.hypot(knocks.all_rows_n), ..self }
+    }
+
     /// Share of the mismatch that is left, in mean squares.
     pub fn share_left(&self) -> f64 {
         if self.mismatch_n > 0.0 { (self.left_n / self.mismatch_n).powi(2).min(1.0) } else { 0.0 }
     }
 }
 
-/// The verdict.
-pub fn verdict(found: &Found, sizes: &Sizes) -> Verdict {
-    let named = !found.best.state.guesses.is_empty();
+/// The verdict, for what the search found; `knocks` says whether a mass was named besides.
+pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
     let structured = sizes.left_n > 0.5 * sizes.matters_n && sizes.share_left() > MOST_LEFT;
-    if !named {
+    if found.best.state.guesses.is_empty() && !knocks {
         // The floor is an upper bound: smooth functions may not follow all that is there. So what they do follow must not be
         // much of the residual, either.
         let telling = !sizes.limited && sizes.structured_share > MOST_STRUCTURED;

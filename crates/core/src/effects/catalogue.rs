@@ -175,6 +175,7 @@ mod tests {
             ("N s/m", "_n_s_per_m"),
             ("Pa", "_pa"),
             ("kg", "_kg"),
+            ("Hz", "_hz"),
         ];
         for effect in CATALOGUE {
             let id = effect.page().id;
@@ -285,6 +286,7 @@ mod tests {
                         slide_speed_m_per_s: generator.random_range(-0.1..0.1),
                         acceleration_m_per_s2: generator.random_range(-50.0..50.0),
                         direction: [-1.0, 0.0, 1.0][index % 3],
+                        came: index % 2 == 0,
                         slide_m: generator.random_range(-0.01..0.1),
                         force_n: generator.random_range(-50.0..900.0),
                     };

@@ -111,9 +111,9 @@ mod tests {
     #[test]
     fn it_starts_at_zero_and_goes_on_with_the_time() {
         let mut memory = ForceDrift.start(&nominal(), &[120.0]);
-        assert_eq!(pull(&mut *memory, &still(), &base()), [0.0, 0.0]);
+        assert_eq!(pull(&mut *memory, &still(), &base()), [0.0; 3]);
         let later = Moment { time_s: 120.0, step_s: 120.0, ..still() };
-        let [even, warm_up] = pull(&mut *memory, &later, &Base::default());
+        let [even, warm_up, _] = pull(&mut *memory, &later, &Base::default());
         assert_eq!(even, 120.0);
         assert!((warm_up - (1.0 - (-1.0_f64).exp())).abs() < 1e-12);
     }

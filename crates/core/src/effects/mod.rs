@@ -46,6 +46,7 @@ mod viscous_damping;
 
 pub use augmented::{AugmentedMemory, AugmentedModel, Term};
 pub use catalogue::{CATALOGUE, effect};
+pub use inertia::Mount;
 pub use moment::{Base, Moment};
 pub use page::{Page, Symbol};
 
@@ -180,7 +181,8 @@ pub trait Effect: Sync {
 
 /// What an effect remembers from moment to moment.
 ///
-/// At the first moment, and at the first one behind a gap (`step_s == 0`), a memory is settled.
+/// At the first moment of a recording a memory is settled. A gap (`step_s == 0`) is crossed: what fades with time has gone on,
+/// what slides has come straight from where it was.
 pub trait Memory: Send {
     /// Changes pressure or length from what the channels say to what the muscle sees.
     fn sees(&mut self, _now: &mut Moment) {}

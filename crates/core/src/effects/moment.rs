@@ -30,6 +30,8 @@ pub struct Moment {
     pub acceleration_m_per_s2: f64,
     /// Direction of motion: +1 contracting, -1 extending, 0 where nothing ever moved.
     pub direction: f64,
+    /// Whether the muscle is known to have come in that direction to where it is. The beginning of a recording does not say.
+    pub came: bool,
     /// How far the braid has slid, rising while it contracts: the smooth contraction in metres, and where the length stands
     /// still [`SLIDE_M_PER_PA`] times the pressure.
     pub slide_m: f64,
@@ -90,6 +92,7 @@ impl Moment {
             slide_speed_m_per_s: 0.0,
             acceleration_m_per_s2: 0.0,
             direction,
+            came: true,
             slide_m: muscle.rest_length_m - length_m,
             force_n: 0.0,
         }
@@ -155,6 +158,7 @@ pub(super) mod tests {
             slide_speed_m_per_s: 0.0,
             acceleration_m_per_s2: 0.0,
             direction: 1.0,
+            came: true,
             slide_m: 0.027,
             force_n: 350.0,
         }
@@ -174,8 +178,8 @@ pub(super) mod tests {
     }
 
     /// Columns of a pull, zero where the effect has fewer.
-    pub(in super::super) fn pull(memory: &mut dyn Memory, now: &Moment, base: &Base) -> [f64; 2] {
-        let mut columns = [0.0; 2];
+    pub(in super::super) fn pull(memory: &mut dyn Memory, now: &Moment, base: &Base) -> [f64; 3] {
+        let mut columns = [0.0; 3];
         memory.pulls(now, base, &mut columns);
         columns
     }

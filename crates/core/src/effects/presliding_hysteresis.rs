@@ -5,7 +5,7 @@
 //! ```
 
 use super::page::{Confusion, Page, Symbol};
-use super::slip::Slip;
+use super::slip::Follower;
 use super::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
@@ -37,22 +37,15 @@ impl Effect for PreslidingHysteresis {
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { distance_m: shape[0], slip: None })
+        Box::new(State(Follower::new(shape[0])))
     }
 }
 
-struct State {
-    distance_m: f64,
-    slip: Option<Slip>,
-}
+struct State(Follower);
 
 impl Memory for State {
     fn slides(&mut self, now: &Moment) -> f64 {
-        if now.step_s == 0.0 {
-            self.slip = None;
-        }
-        let settled = || Slip::settled(self.distance_m, now.slide_m, now.direction);
-        self.slip.get_or_insert_with(settled).move_to(now.slide_m)
+        self.0.follow(now, now.slide_m, now.direction)
     }
 }
 

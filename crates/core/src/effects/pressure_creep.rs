@@ -1,14 +1,20 @@
 //! Pressure creep: braid and bladder go on yielding under the gas.
 //!
 //! ```text
-//! F = F_base + g₁ (f - q₁) + g₂ (f - q₂),   τ_i dq_i/dt = f - q_i,   f = F_gas(p, L),   τ₂ = 10 τ₁
+//! F = F_base + Σ g_i [(1 - s) A(L) (p - r_i) + s (f - q_i)],   A = F_gas / p,   f = F_gas(p, L)
+//! τ_i dr_i/dt = p - r_i,   τ_i dq_i/dt = f - q_i,   τ_i = τ, 10 τ, 100 τ
 //! ```
+//!
+//! With `s = 0` inflation alone drives it; with `s = 1` so does a change of the length under pressure.
 
 use super::page::{Confusion, Page, Symbol};
 use super::prony::Overstress;
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
+
+/// Pressure below which the force of the gas says nothing of the area that it pulls on, in Pa.
+const LEAST_PA: f64 = 1e3;
 
 /// The effect.
 #[derive(Debug)]
@@ -28,26 +34,44 @@ impl Effect for PressureCreep {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "time_constant_s", unit: "s", range: (0.02, 300.0), grid: &[0.1, 0.3, 1.0, 3.0, 10.0, 30.0] }]
+        &[
+            Shape { name: "time_constant_s", unit: "s", range: (0.02, 300.0), grid: &[0.03, 0.2, 1.0, 6.0] },
+            Shape { name: "share_of_length", unit: "1", range: (0.0, 1.0), grid: &[0.0, 1.0] },
+        ]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
             Amplitude { name: "overstress", unit: "1", range: (0.0, 0.5) },
             Amplitude { name: "slow_overstress", unit: "1", range: (0.0, 0.5) },
+            Amplitude { name: "slowest_overstress", unit: "1", range: (0.0, 0.5) },
         ]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State(Overstress::new(shape[0])))
+        let overstress = Overstress::new(shape[0]);
+        Box::new(State { share_of_length: shape[1], area_m2: 0.0, by_pressure: overstress, by_force: overstress })
     }
 }
 
-struct State(Overstress);
+struct State {
+    share_of_length: f64,
+    /// Force of the gas per pascal.
+    area_m2: f64,
+    by_pressure: Overstress,
+    by_force: Overstress,
+}
 
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
-        columns.copy_from_slice(&self.0.follow(now.step_s, base.gas_n));
+        if now.pressure_pa.abs() > LEAST_PA {
+            self.area_m2 = base.gas_n / now.pressure_pa;
+        }
+        let by_pressure = self.by_pressure.follow(now, now.pressure_pa);
+        let by_force = self.by_force.follow(now, base.gas_n);
+        for ((column, by_pressure), by_force) in columns.iter_mut().zip(by_pressure).zip(by_force) {
+            *column = (1.0 - self.share_of_length) * self.area_m2 * by_pressure + self.share_of_length * by_force;
+        }
     }
 }
 
@@ -56,20 +80,28 @@ static PAGE: Page = Page {
     name: "creep under pressure",
     summary: "Strands under tension stretch on, and the weave settles, for seconds to minutes behind each change of \
               what the gas pulls. The force overshoots and comes down at constant pressure and length.",
-    equation: "F = F_base + g₁ (f - q₁) + g₂ (f - q₂),  τ_i dq_i/dt = f - q_i,  τ₁ = τ,  τ₂ = 10 τ",
+    equation: "F = F_base + Σ g_i [(1 - s) A (p - r_i) + s (f - q_i)],  τ_i dr_i/dt = p - r_i,  τ_i dq_i/dt = f - q_i,  \
+               τ_i = τ, 10 τ, 100 τ",
     symbols: &[
         Symbol { symbol: "f", unit: "N", meaning: "force of the gas in eq. 11" },
-        Symbol { symbol: "τ", unit: "s", meaning: "shorter time constant; 0.1 to 30 s" },
+        Symbol { symbol: "A", unit: "m²", meaning: "the same per pascal" },
+        Symbol {
+            symbol: "s",
+            unit: "1",
+            meaning: "0 where inflation alone drives it, 1 where a change of the length does too",
+        },
+        Symbol { symbol: "τ", unit: "s", meaning: "shortest time constant; 0.03 to 10 s" },
         Symbol { symbol: "g₁", unit: "1", meaning: "overstress that decays with τ; 0.01 to 0.05 of the gas" },
         Symbol { symbol: "g₂", unit: "1", meaning: "overstress that decays with 10 τ; likewise" },
-        Symbol { symbol: "q_i", unit: "N", meaning: "what braid and bladder have got used to" },
+        Symbol { symbol: "g₃", unit: "1", meaning: "overstress that decays with 100 τ; likewise" },
+        Symbol { symbol: "r_i, q_i", unit: "Pa, N", meaning: "what braid and bladder have got used to" },
     ],
     validity: "Pressure measured in the muscle and temperature of the gas settled, that is some seconds behind a fast \
-               filling; linear viscoelasticity over two decades of time around τ.",
+               filling; linear viscoelasticity over three decades of time from τ on.",
     source: "Minh, Tjahjowidodo, Ramon and Van Brussel (2010) for creep of pneumatic muscles; Prony series of a \
              generalized Maxwell body (Wiechert 1893)",
-    signature: "In holds behind a step the residual decays, in proportion to what the step changed the force of the gas \
-                by: behind steps of the pressure as behind steps of the length.",
+    signature: "In holds behind a step of the pressure the residual decays, in proportion to what the step changed the force \
+                of the gas by; behind steps of the length as well where s is 1.",
     confused_with: &[
         Confusion {
             id: "viscoelastic-relaxation",
@@ -100,14 +132,30 @@ mod tests {
 
     #[test]
     fn inflation_overshoots_and_comes_down() {
-        let mut memory = PressureCreep.start(&nominal(), &[1.0]);
-        assert_eq!(pull(&mut *memory, &still(), &base()), [0.0; 2]);
-        let inflated = Base { gas_n: base().gas_n + 100.0, ..base() };
-        let now = |step_s| Moment { step_s, ..still() };
-        let [fast_n, slow_n] = pull(&mut *memory, &now(1e-6), &inflated);
-        assert!((fast_n - 100.0).abs() < 1e-3 && (slow_n - 100.0).abs() < 1e-3);
-        let [fast_n, slow_n] = pull(&mut *memory, &now(3.0), &inflated);
-        assert!((fast_n - 100.0 * (-3.0_f64).exp()).abs() < 1e-3);
-        assert!((slow_n - 100.0 * (-0.3_f64).exp()).abs() < 1e-3);
+        for share_of_length in [0.0, 1.0] {
+            let mut memory = PressureCreep.start(&nominal(), &[1.0, share_of_length]);
+            assert_eq!(pull(&mut *memory, &still(), &base()), [0.0; 3]);
+            let pressure_pa = 1.25 * still().pressure_pa;
+            let inflated = Base { gas_n: 1.25 * base().gas_n, ..base() };
+            let by_n = 0.25 * base().gas_n;
+            let now = |time_s, step_s| Moment { time_s, step_s, pressure_pa, ..still() };
+            let [fast_n, slow_n, _] = pull(&mut *memory, &now(1e-6, 1e-6), &inflated);
+            assert!((fast_n - by_n).abs() < 1e-3 && (slow_n - by_n).abs() < 1e-3);
+            let [fast_n, slow_n, _] = pull(&mut *memory, &now(3.0, 3.0), &inflated);
+            assert!((fast_n - by_n * (-3.0_f64).exp()).abs() < 1e-3);
+            assert!((slow_n - by_n * (-0.3_f64).exp()).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_step_of_the_length_shows_as_far_as_it_drives() {
+        for share_of_length in [0.0, 1.0] {
+            let mut memory = PressureCreep.start(&nominal(), &[1.0, share_of_length]);
+            pull(&mut *memory, &still(), &base());
+            let shortened = Base { gas_n: base().gas_n - 50.0, ..base() };
+            let now = Moment { time_s: 1e-6, step_s: 1e-6, ..still() };
+            let [fast_n, ..] = pull(&mut *memory, &now, &shortened);
+            assert!((fast_n + share_of_length * 50.0).abs() < 1e-3, "{fast_n}");
+        }
     }
 }

@@ -5,7 +5,7 @@
 //! ```
 
 use super::page::{Confusion, Page, Symbol};
-use super::slip::Slip;
+use super::slip::Follower;
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
@@ -40,23 +40,16 @@ impl Effect for PressureGaugeHysteresis {
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { slip_pa: shape[0], slip: None })
+        Box::new(State(Follower::new(shape[0])))
     }
 }
 
-struct State {
-    slip_pa: f64,
-    slip: Option<Slip>,
-}
+struct State(Follower);
 
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
-        if now.step_s == 0.0 {
-            self.slip = None;
-        }
         // Where the pressure came from at first is not known, and the direction of motion does not tell.
-        let settled = || Slip::settled(self.slip_pa, now.pressure_pa, 0.0);
-        columns[0] = base.slope_n_per_pa * self.slip.get_or_insert_with(settled).move_to(now.pressure_pa);
+        columns[0] = base.slope_n_per_pa * self.0.follow(now, now.pressure_pa, 0.0);
     }
 }
 

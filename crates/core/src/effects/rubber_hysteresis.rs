@@ -5,7 +5,7 @@
 //! ```
 
 use super::page::{Confusion, Page, Symbol};
-use super::slip::Slip;
+use super::slip::Follower;
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
@@ -36,25 +36,20 @@ impl Effect for RubberHysteresis {
     }
 
     fn start(&self, muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { distance_m: shape[0], rest_length_m: muscle.rest_length_m, slip: None })
+        Box::new(State { rest_length_m: muscle.rest_length_m, follower: Follower::new(shape[0]) })
     }
 }
 
 struct State {
-    distance_m: f64,
     rest_length_m: f64,
-    slip: Option<Slip>,
+    follower: Follower,
 }
 
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, _base: &Base, columns: &mut [f64]) {
-        if now.step_s == 0.0 {
-            self.slip = None;
-        }
         // Rubber that is not stretched has no loop: pressure alone moves nothing.
         let contraction_m = now.contraction_ratio * self.rest_length_m;
-        let settled = || Slip::settled(self.distance_m, contraction_m, now.direction);
-        columns[0] = -self.slip.get_or_insert_with(settled).move_to(contraction_m);
+        columns[0] = -self.follower.follow(now, contraction_m, now.direction);
     }
 }
 

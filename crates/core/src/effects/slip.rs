@@ -12,6 +12,8 @@
 //! Source: Al-Bender, Lampaert and Swevers (2005), "The generalized Maxwell-slip model", IEEE Trans.
 //! Automatic Control 50(11).
 
+use super::Moment;
+
 /// Slip distances of the elements in units of the characteristic distance: one decade and a half.
 const DISTANCES: [f64; 6] = [0.15, 0.35, 0.7, 1.3, 2.3, 4.5];
 /// Weights that make the virgin curve `1 - exp(-x/δ)` at those distances, nearly.
@@ -42,6 +44,33 @@ impl Slip {
             sum += weight * *state;
         }
         sum
+    }
+}
+
+/// Slip along the recordings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Follower {
+    distance: f64,
+    /// The recording it is in.
+    slip: Option<(usize, Slip)>,
+}
+
+impl Follower {
+    /// With the characteristic distance.
+    pub(super) fn new(distance: f64) -> Self {
+        Self { distance, slip: None }
+    }
+
+    /// The share of the full force, in [-1, 1], where `position` has been reached `now`. The muscle came
+    /// in `direction`, or from nowhere in particular; a gap in a recording is crossed straight.
+    pub(super) fn follow(&mut self, now: &Moment, position: f64, direction: f64) -> f64 {
+        let mut slip = match self.slip {
+            Some((recording, slip)) if recording == now.recording => slip,
+            _ => Slip::settled(self.distance, position, if now.came { direction } else { 0.0 }),
+        };
+        let share = slip.move_to(position);
+        self.slip = Some((now.recording, slip));
+        share
     }
 }
 

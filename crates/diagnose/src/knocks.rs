@@ -1,0 +1,463 @@
+//! Knocks: what a mass does to the load cell where a drive starts, stops or turns.
+//!
+//! They last some tens of milliseconds, much of that where the direction is not settled: the grid of a [`crate::track`]
+//! smooths them over or does not count them. So they are looked for in the samples as recorded, in what the model leaves
+//! there. Around each knock, the residual is cleared of a level, a slope and what goes with the speed (friction, damping,
+//! delays); what remains must be one mass times the acceleration behind one mount ([`pam_core::effects::Mount`]), the same in
+//! all knocks.
+
+use std::ops::Range;
+
+use pam_core::artifact::ModelArtifact;
+use pam_core::artifact::diagnosis::{Coordinate, Region};
+use pam_core::artifact::model::ParameterEntry;
+use pam_core::direction::Thresholds;
+use pam_core::effects::{AugmentedModel, Effect, Mount, Term, effect};
+use pam_core::motion::acceleration_weights;
+use pam_identification::error::IdentifyError;
+use pam_identification::predict::walk_augmented;
+use pam_identification::prepare::Prepared;
+use rayon::prelude::*;
+
+use crate::joint::HeldOut;
+use crate::search::{Limits, chance};
+use crate::track::FOLDS;
+use crate::uncertainty::entry;
+use crate::verdict::Sizes;
+
+/// Catalogue id of what knocks.
+pub const ID: &str = "inertia";
+
+/// An acceleration is a knock above so many times the usual one of its segment.
+const TIMES_USUAL: f64 = 8.0;
+/// The same in m/s², where the usual one is nothing.
+const LEAST_M_PER_S2: f64 = 0.3;
+/// The speed of a knock changes within this time, in s: a slower one is seen by the ordinary search.
+const LONGEST_S: f64 = 0.045;
+/// Knocks that are needed.
+const LEAST_KNOCKS: usize = 8;
+/// Share of what is left in the knocks that one mass must explain where it was not fitted.
+const EXPLAINED: f64 = 0.75;
+/// Times the noise floor that it must amount to in them, root mean square.
+const TIMES_FLOOR: f64 = 3.0;
+/// Probability by chance that is still believed.
+const CHANCE: f64 = 1e-3;
+/// Rounds in which the frequency of the mount is looked for between its neighbors.
+const ROUNDS: usize = 3;
+/// Frequencies of the mount that are tried first, in Hz.
+const MOUNTS_HZ: [f64; 8] = [12.0, 16.0, 20.0, 25.0, 30.0, 40.0, 60.0, 120.0];
+
+/// A mass that knocks.
+#[derive(Debug, Clone)]
+pub struct Knocks {
+    mass_kg: f64,
+    mass_stderr_kg: f64,
+    mount_hz: f64,
+    /// Mean squares of every knock without the mass and with it, each with the mass of the other folds.
+    pub without: HeldOut,
+    /// With it.
+    pub with: HeldOut,
+    /// What the mass explains, root mean square over all rows, in N.
+    pub all_rows_n: f64,
+    /// Rows around every knock, with the number of the recording.
+    pub touched: Vec<(usize, Range<usize>)>,
+    /// Lowest and highest speed that is come from or gone to, in m/s.
+    speeds_m_per_s: (f64, f64),
+}
+
+impl Knocks {
+    /// Those in what `explained` leaves, where they matter and a mass may be named beside what it has.
+    ///
+    /// # Errors
+    /// See [`of`](Self::of).
+    pub fn that_matter(
+        recordings: &[Prepared],
+        explained: &AugmentedModel,
+        model: &ModelArtifact,
+        limits: &Limits,
+        sizes: &Sizes,
+    ) -> Result<Option<Self>, IdentifyError> {
+        let known = explained.terms().iter().any(|term| term.effect.page().id == ID);
+        if known || explained.terms().len() >= limits.max_effects || limits.excluded.iter().any(|id| id == ID) {
+            return Ok(None);
+        }
+        let knocks = Self::of(recordings, explained, model.direction, model.geometry.rest_length_m, sizes.floor_n)?;
+        // Averaged as accelerations are, a knock keeps about half of its size.
+        let matters_n = if sizes.limited { sizes.matters_n } else { 0.5 * sizes.matters_n };
+        Ok(knocks.filter(|knocks| knocks.all_rows_n > matters_n))
+    }
+
+    /// Those in `recordings` that `model` leaves unexplained, where noise leaves `floor_n` of any model; none where there are
+    /// none that a mass explains. `thresholds` are those of the direction, `rest_length_m` is that of the muscle.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Samples`] where samples cannot be read back.
+    pub fn of(
+        recordings: &[Prepared],
+        model: &AugmentedModel,
+        thresholds: Thresholds,
+        rest_length_m: f64,
+        floor_n: f64,
+    ) -> Result<Option<Self>, IdentifyError> {
+        let found: Result<Vec<Vec<Knock>>, IdentifyError> = recordings
+            .par_iter()
+            .enumerate()
+            .map(|(index, prepared)| {
+                let mut lines: Vec<Line> = Vec::new();
+                walk_augmented(prepared, model, thresholds, rest_length_m, index, &mut |instant, model_n| {
+                    if instant.moment.step_s == 0.0 || lines.is_empty() {
+                        lines.push(Line { recording: index, first_row: instant.row, ..Line::default() });
+                    }
+                    if let Some(line) = lines.last_mut() {
+                        line.times_s.push(instant.moment.time_s);
+                        line.accelerations.push(instant.moment.acceleration_m_per_s2);
+                        line.speeds.push(instant.moment.speed_m_per_s);
+                        line.residuals_n.push(instant.force_n - model_n);
+                    }
+                })
+                .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+                Ok(lines.iter().flat_map(Line::knocks).collect())
+            })
+            .collect();
+        let knocks: Vec<Knock> = found?.into_iter().flatten().collect();
+        if knocks.len() < LEAST_KNOCKS {
+            return Ok(None);
+        }
+        let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
+        Ok(Self::fitted(&knocks, n_rows, floor_n))
+    }
+
+    fn fitted(knocks: &[Knock], n_rows: usize, floor_n: f64) -> Option<Self> {
+        let sums_at = |mount_hz: f64| -> Vec<Sums> { knocks.iter().map(|knock| knock.sums(mount_hz)).collect() };
+        let left = |sums: &[Sums]| Sums::total(sums).left();
+        let mut best: (f64, f64, Vec<Sums>) = (f64::INFINITY, 0.0, Vec::new());
+        let look = |mount_hz: f64, best: &mut (f64, f64, Vec<Sums>)| {
+            let sums = sums_at(mount_hz);
+            if left(&sums) < best.0 {
+                *best = (left(&sums), mount_hz, sums);
+            }
+        };
+        for mount_hz in MOUNTS_HZ {
+            look(mount_hz, &mut best);
+        }
+        let mut factor: f64 = 1.12;
+        for _ in 0..ROUNDS {
+            let center = best.1;
+            for mount_hz in [center / factor, center * factor] {
+                look(mount_hz.clamp(MOUNTS_HZ[0], MOUNTS_HZ[MOUNTS_HZ.len() - 1]), &mut best);
+            }
+            factor = factor.sqrt();
+        }
+        let (_, mount_hz, sums) = best;
+        let total = Sums::total(&sums);
+        let others: Vec<f64> = (0..FOLDS)
+            .map(|fold| {
+                let rest: Vec<Sums> =
+                    sums.iter().enumerate().filter(|(index, _)| index % FOLDS != fold).map(|(_, sums)| *sums).collect();
+                Sums::total(&rest).slope()
+            })
+            .collect();
+        let mean = others.iter().sum::<f64>() / FOLDS as f64;
+        let n = FOLDS as f64;
+        let variance = (n - 1.0) / n * others.iter().map(|slope| (slope - mean).powi(2)).sum::<f64>();
+        let counts: Vec<f64> = sums.iter().map(|sums| sums.rows).collect();
+        let without = HeldOut { blocks: sums.iter().map(|sums| sums.yy / sums.rows).collect(), counts: counts.clone() };
+        let with = HeldOut {
+            blocks: sums
+                .iter()
+                .enumerate()
+                .map(|(index, sums)| sums.left_by(others[index % FOLDS]) / sums.rows)
+                .collect(),
+            counts,
+        };
+        let explained = without.mean_square() - with.mean_square();
+        let believed = explained > EXPLAINED * without.mean_square()
+            && explained > (TIMES_FLOOR * floor_n).powi(2)
+            && chance(&without, &with) < CHANCE;
+        let mut speeds: Vec<f64> = knocks.iter().map(|knock| knock.fastest_m_per_s).collect();
+        speeds.sort_by(f64::total_cmp);
+        believed.then(|| Self {
+            // The columns of the effect are the negative acceleration.
+            mass_kg: -total.slope(),
+            mass_stderr_kg: variance.sqrt(),
+            mount_hz,
+            all_rows_n: (explained * total.rows / n_rows.max(1) as f64).sqrt(),
+            without,
+            with,
+            touched: knocks.iter().map(|knock| knock.place.clone()).collect(),
+            speeds_m_per_s: (speeds[speeds.len() / 20], speeds[speeds.len() - 1]),
+        })
+    }
+
+    /// The effect.
+    ///
+    /// # Panics
+    /// Never: the catalogue has it.
+    #[expect(clippy::expect_used, reason = "the catalogue is fixed")]
+    pub fn effect() -> &'static dyn Effect {
+        effect(ID).expect("the catalogue has inertia")
+    }
+
+    /// The effect with its values.
+    pub fn term(&self) -> Term {
+        Term { effect: Self::effect(), shape: vec![self.mount_hz], amplitudes: vec![self.mass_kg] }
+    }
+
+    /// Its parameters, as an artifact has them.
+    pub fn entries(&self) -> Vec<ParameterEntry> {
+        let (shape, amplitude) = (&Self::effect().shape()[0], &Self::effect().amplitudes()[0]);
+        vec![
+            entry(shape.name, shape.unit, self.mount_hz, shape.range, None),
+            entry(amplitude.name, amplitude.unit, self.mass_kg, amplitude.range, Some(self.mass_stderr_kg)),
+        ]
+    }
+
+    /// Where it shows: at speeds that are come from or gone to at once; `mismatch_n` is the whole mismatch.
+    pub fn region(&self, mismatch_n: f64) -> Region {
+        Region {
+            coordinate: Coordinate::Speed,
+            from: self.speeds_m_per_s.0,
+            to: self.speeds_m_per_s.1,
+            unit: Coordinate::Speed.unit().to_owned(),
+            share_of_excess: (self.all_rows_n / mismatch_n).powi(2).min(1.0),
+            p_value: chance(&self.without, &self.with),
+            recording: None,
+        }
+    }
+}
+
+/// One segment of a recording, row by row.
+#[derive(Debug, Default)]
+struct Line {
+    /// Number of the recording, and the first row of the segment in it.
+    recording: usize,
+    first_row: usize,
+    times_s: Vec<f64>,
+    /// In m/s².
+    accelerations: Vec<f64>,
+    /// In m/s.
+    speeds: Vec<f64>,
+    residuals_n: Vec<f64>,
+}
+
+/// A knock with the rows around it.
+#[derive(Debug, Clone)]
+struct Knock {
+    period_s: f64,
+    /// From some time before the window, for the mount to come to rest.
+    accelerations: Vec<f64>,
+    /// Rows before the window.
+    before: usize,
+    /// In the window, averaged as the acceleration is.
+    residuals_n: Vec<f64>,
+    fastest_m_per_s: f64,
+    /// Number of the recording, and the rows of the window in it.
+    place: (usize, Range<usize>),
+}
+
+impl Line {
+    fn knocks(&self) -> Vec<Knock> {
+        let n = self.times_s.len();
+        let Some(period_s) = (n > 1).then(|| (self.times_s[n - 1] - self.times_s[0]) / (n - 1) as f64) else {
+            return Vec::new();
+        };
+        let weights = acceleration_weights(period_s);
+        let half = weights.len() / 2 + 1;
+        let (before, after) = (8 * half, 4 * half);
+        let mut sizes: Vec<f64> = self.accelerations.iter().map(|acceleration| acceleration.abs()).collect();
+        if n <= before + after + half {
+            return Vec::new();
+        }
+        let (_, usual, _) = sizes.select_nth_unstable_by(n / 2, f64::total_cmp);
+        let threshold = (TIMES_USUAL * 1.4826 * *usual).max(LEAST_M_PER_S2);
+        let mut knocks = Vec::new();
+        let mut at = before;
+        while at < n - after - half {
+            if self.accelerations[at].abs() <= threshold {
+                at += 1;
+                continue;
+            }
+            let end = (at..n - after - half).find(|&row| self.accelerations[row].abs() <= threshold);
+            let end = end.unwrap_or(n - after - half);
+            let peak = (at..end)
+                .max_by(|&left, &right| self.accelerations[left].abs().total_cmp(&self.accelerations[right].abs()))
+                .unwrap_or(at);
+            at = end + half;
+            let (came, went) = (self.speeds[peak - 2 * half], self.speeds[peak + 2 * half]);
+            if ((went - came) / self.accelerations[peak]).abs() > LONGEST_S {
+                continue;
+            }
+            let window = peak - 3 * half..peak + after;
+            let averaged = |row: usize| -> f64 {
+                let rows = &self.residuals_n[row + 1 - half..row + half];
+                rows.iter().zip(&weights).map(|(residual, weight)| residual * weight).sum()
+            };
+            let residuals_n: Vec<f64> = window.clone().map(averaged).collect();
+            if residuals_n.iter().all(|residual| residual.is_finite()) {
+                knocks.push(Knock {
+                    period_s,
+                    accelerations: self.accelerations[peak - before..window.end].to_vec(),
+                    before: before - 3 * half,
+                    residuals_n,
+                    fastest_m_per_s: came.abs().max(went.abs()),
+                    place: (self.recording, self.first_row + window.start..self.first_row + window.end),
+                });
+            }
+        }
+        knocks
+    }
+}
+
+/// Sums over the rows of knocks of residual and acceleration, both cleared of level, slope and speed.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    rows: f64,
+    /// Residual squared, in N².
+    yy: f64,
+    /// Acceleration squared, in m²/s⁴.
+    aa: f64,
+    /// Their product.
+    ay: f64,
+}
+
+impl Sums {
+    fn total(sums: &[Self]) -> Self {
+        sums.iter().fold(Self::default(), |total, sums| Self {
+            rows: total.rows + sums.rows,
+            yy: total.yy + sums.yy,
+            aa: total.aa + sums.aa,
+            ay: total.ay + sums.ay,
+        })
+    }
+
+    fn slope(&self) -> f64 {
+        if self.aa > 0.0 { self.ay / self.aa } else { 0.0 }
+    }
+
+    fn left_by(&self, slope: f64) -> f64 {
+        (self.yy - 2.0 * slope * self.ay + slope * slope * self.aa).max(0.0)
+    }
+
+    fn left(&self) -> f64 {
+        self.left_by(self.slope())
+    }
+}
+
+impl Knock {
+    fn sums(&self, mount_hz: f64) -> Sums {
+        let rows = self.residuals_n.len();
+        let mut mount = Mount::new(mount_hz);
+        let behind = self.accelerations.iter().map(|&acceleration| mount.follow(acceleration, self.period_s));
+        // What the acceleration sums up to is the speed, averaged as it is.
+        let mut speed = 0.0;
+        let speeds = self.accelerations[self.before..].iter().map(|&acceleration| {
+            speed += 0.5 * acceleration;
+            let here = speed;
+            speed += 0.5 * acceleration;
+            here
+        });
+        let mut cleared: Vec<Vec<f64>> = Vec::new();
+        let columns = [
+            vec![1.0; rows],
+            (0..rows).map(|row| row as f64).collect(),
+            speeds.collect(),
+            behind.skip(self.before).collect(),
+            self.residuals_n.clone(),
+        ];
+        for mut column in columns {
+            for basis in cleared.iter().take(3) {
+                let share = dot(basis, &column) / dot(basis, basis).max(f64::MIN_POSITIVE);
+                column.iter_mut().zip(basis).for_each(|(value, basis)| *value -= share * basis);
+            }
+            cleared.push(column);
+        }
+        let (acceleration, residual) = (&cleared[3], &cleared[4]);
+        Sums {
+            rows: rows as f64,
+            yy: dot(residual, residual),
+            aa: dot(acceleration, acceleration),
+            ay: dot(acceleration, residual),
+        }
+    }
+}
+
+fn dot(left: &[f64], right: &[f64]) -> f64 {
+    left.iter().zip(right).map(|(left, right)| left * right).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    const PERIOD_S: f64 = 0.005;
+    /// Steps of the truth in one period.
+    const FINE: usize = 50;
+
+    /// Moves between two lengths with holds, at speeds that change from move to move. `pull` gives the force at a speed and an
+    /// acceleration of an underdamped mount, which is another one than the fit has.
+    fn line(pull: impl Fn(f64, f64) -> f64) -> Line {
+        let mut line = Line::default();
+        let (mut place_m, mut along_m, mut along_m_per_s) = (0.0, 0.0, 0.0);
+        let rad_per_s = TAU * 30.0;
+        let mut fine = Vec::new();
+        for index in 0..24 {
+            let speed = 0.02 * f64::from(1 + index % 5) * if index % 2 == 0 { 1.0 } else { -1.0 };
+            for (drive_m_per_s, duration_s) in [(speed, 0.1), (0.0, 0.4)] {
+                for _ in 0..(duration_s / PERIOD_S * FINE as f64).round() as usize {
+                    let step_s = PERIOD_S / FINE as f64;
+                    place_m += drive_m_per_s * step_s;
+                    let acceleration = rad_per_s * (rad_per_s * (place_m - along_m) - 1.4 * along_m_per_s);
+                    along_m_per_s += acceleration * step_s;
+                    along_m += along_m_per_s * step_s;
+                    fine.push((place_m, pull(drive_m_per_s, acceleration)));
+                }
+            }
+        }
+        let rows: Vec<(f64, f64)> = fine.iter().skip(FINE / 2).step_by(FINE).copied().collect();
+        let weights = acceleration_weights(PERIOD_S);
+        let half = weights.len() / 2;
+        for at in 0..rows.len() {
+            let place = |row: usize| rows[row.clamp(1, rows.len() - 2)].0;
+            let bend = |row: usize| place(row + 1) - 2.0 * place(row) + place(row.max(1) - 1);
+            let averaged: f64 =
+                weights.iter().enumerate().map(|(index, weight)| weight * bend((at + index).max(half) - half)).sum();
+            line.times_s.push(at as f64 * PERIOD_S);
+            line.accelerations.push(averaged / (PERIOD_S * PERIOD_S));
+            line.speeds.push((place(at + 8) - place(at.max(8) - 8)) / (16.0 * PERIOD_S));
+            line.residuals_n.push(rows[at].1);
+        }
+        line
+    }
+
+    fn found(pull: impl Fn(f64, f64) -> f64) -> Option<Knocks> {
+        let line = line(pull);
+        let knocks = line.knocks();
+        assert!(knocks.len() >= 40, "{}", knocks.len());
+        Knocks::fitted(&knocks, line.times_s.len(), 0.05)
+    }
+
+    #[test]
+    fn a_mass_is_found_behind_another_mount() {
+        let knocks = found(|_, acceleration| -2.0 * acceleration).expect("a mass");
+        assert!((knocks.mass_kg / 2.0 - 1.0).abs() < 0.2, "{knocks:?}");
+    }
+
+    #[test]
+    fn damping_and_friction_are_no_mass() {
+        assert!(found(|speed, _| 100.0 * speed).is_none());
+        assert!(found(|speed, _| 5.0 * speed.signum() * f64::from(u8::from(speed != 0.0))).is_none());
+        assert!(found(|_, _| 0.0).is_none());
+    }
+
+    #[test]
+    fn what_differs_from_knock_to_knock_is_no_mass() {
+        let sign = std::cell::Cell::new(0_u64);
+        let odd = |_: f64, acceleration: f64| {
+            sign.set(sign.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1));
+            acceleration * if sign.get() >> 63 == 0 { 1.0 } else { -1.0 }
+        };
+        assert!(found(odd).is_none());
+    }
+}

@@ -1,0 +1,97 @@
+//! What a search is made with, and the search itself: on the grid, then for knocks, and then on the grid without them.
+
+use pam_core::artifact::ModelArtifact;
+use pam_core::effects::AugmentedModel;
+use pam_core::force::columns::ForceColumns;
+use pam_identification::prepare::Prepared;
+use pam_identification::search_space::SearchSpace;
+
+use crate::base;
+use crate::diagnose::terms;
+use crate::error::DiagnoseError;
+use crate::knocks::Knocks;
+use crate::search::{Found, Limits, search};
+use crate::state::Setting;
+use crate::track::Track;
+use crate::verdict::Sizes;
+
+/// What a search is made with, but for the track.
+#[derive(Debug)]
+pub struct Question<'a> {
+    /// Recordings that effects are fitted to.
+    pub estimation: &'a [Prepared],
+    /// The model that is in question.
+    pub model: &'a ModelArtifact,
+    /// Limits of the search.
+    pub limits: Limits,
+    /// Base parameters that move, and their ranges.
+    pub space: SearchSpace,
+    columns: ForceColumns,
+}
+
+/// What came out.
+#[derive(Debug)]
+pub struct Answer {
+    /// The recordings, without what knocks touch where a mass was named.
+    pub track: Track,
+    /// What the search found on it.
+    pub found: Found,
+    /// A mass that knocks.
+    pub knocks: Option<Knocks>,
+    /// Sizes that a verdict rests on.
+    pub sizes: Sizes,
+}
+
+impl<'a> Question<'a> {
+    /// Whether `estimation` and `model` differ by effects within `limits`.
+    pub fn new(estimation: &'a [Prepared], model: &'a ModelArtifact, limits: Limits) -> Self {
+        let largest_n_per_m =
+            estimation.iter().map(|prepared| prepared.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
+        let columns = ForceColumns::new(&model.geometry, model.strand_modulus_pa, model.form, largest_n_per_m);
+        let space = base::search_space(model, &columns);
+        Self { estimation, model, limits, space, columns }
+    }
+
+    /// What fits to `track` share.
+    pub fn setting<'b>(&'b self, track: &'b Track) -> Setting<'b> {
+        Setting {
+            track,
+            columns: &self.columns,
+            space: &self.space,
+            muscle: &self.model.geometry,
+            strand_modulus_pa: self.model.strand_modulus_pa,
+            only: None,
+        }
+    }
+
+    /// Searches `track`; calls `looked` behind every look at the catalogue.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit; where they cannot be read back.
+    pub fn answer(&self, track: Track, looked: &dyn Fn()) -> Result<Answer, DiagnoseError> {
+        let (found, sizes) = self.search(&track, looked)?;
+        let Some(first) = self.knocks(&found, &sizes)? else {
+            return Ok(Answer { track, found, knocks: None, sizes });
+        };
+        // What knocks leave on the grid around them would hide the rest, and would be taken for something else.
+        let track = track.without(&first);
+        let (found, sizes) = self.search(&track, looked)?;
+        let knocks = self.knocks(&found, &sizes)?.unwrap_or(first);
+        let sizes = sizes.with(&knocks);
+        Ok(Answer { track, found, knocks: Some(knocks), sizes })
+    }
+
+    fn search(&self, track: &Track, looked: &dyn Fn()) -> Result<(Found, Sizes), DiagnoseError> {
+        let start = base::coordinates(self.model, &self.space);
+        let found = search(&self.setting(track), &start, &self.model.force_model(), &self.limits, looked)
+            .ok_or_else(|| DiagnoseError::Undetermined { path: self.estimation[0].recording.path.clone() })?;
+        let sizes = Sizes::of(&found, &self.limits);
+        Ok((found, sizes))
+    }
+
+    fn knocks(&self, found: &Found, sizes: &Sizes) -> Result<Option<Knocks>, DiagnoseError> {
+        let state = &found.best.state;
+        let explained = AugmentedModel::new(state.model.clone(), terms(state));
+        Ok(Knocks::that_matter(self.estimation, &explained, self.model, &self.limits, sizes)?)
+    }
+}
