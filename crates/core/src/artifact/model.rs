@@ -67,7 +67,7 @@ pub struct ModelArtifact {
 pub struct IdentifyConfig {
     /// Particles of each swarm.
     pub n_particles: usize,
-    /// Moves of each particle.
+    /// Most moves of each particle.
     pub n_iterations: usize,
     /// Swarms.
     pub n_starts: usize,
