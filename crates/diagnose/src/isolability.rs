@@ -47,7 +47,7 @@ static TYPICAL: [Typical; 22] = [
     // 100 N/mm.
     Typical { id: "series-compliance", shapes: &[&[1e-5]], amplitudes: &[] },
     Typical { id: "inertia", shapes: &[&[25.0]], amplitudes: &[0.5] },
-    Typical { id: "slack", shapes: &[&[0.0]], amplitudes: &[] },
+    Typical { id: "slack", shapes: &[&[0.0, 0.0]], amplitudes: &[] },
     Typical { id: "pressure-lag", shapes: &[&[0.06]], amplitudes: &[] },
     Typical { id: "threshold-pressure", shapes: &[&[3e4]], amplitudes: &[] },
     Typical { id: "end-taper", shapes: &[&[]], amplitudes: &[1.0] },
@@ -124,7 +124,7 @@ fn groups(setting: &Setting<'_>, state: &State) -> Vec<Range<usize>> {
     for range in &track.recordings {
         let mut open = false;
         for at in range.clone() {
-            if !track.counted[at] || state.cut[at] {
+            if !track.counted[at] || state.read.slopes[at] < 0.5 {
                 open = false;
                 continue;
             }

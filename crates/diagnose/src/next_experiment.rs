@@ -206,10 +206,9 @@ impl Run {
             .map(|row| {
                 let mut force_n: f64 = row.iter().zip(&weights).map(|(column, weight)| column * weight).sum();
                 for memory in &mut reads {
-                    if memory.cuts(force_n) {
-                        // Nothing that the parameters do shows there.
-                        row.fill(0.0);
-                    }
+                    // As much of what the parameters do shows there.
+                    let slope = memory.slope(force_n);
+                    row.iter_mut().for_each(|column| *column *= slope);
                     force_n = memory.reads(force_n);
                 }
                 force_n

@@ -3,6 +3,7 @@
 use pam_core::effects::Seen;
 
 use crate::coordinates::Coordinates;
+use crate::hypothesis::Guess;
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
 use crate::structure::{Feature, Remainder, Structure, features};
@@ -200,12 +201,44 @@ fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Option<Judged
     judged(setting, setting.fit_near(state.guesses.clone(), &state)?)
 }
 
-/// What was taken, its shapes refined on every instant.
+/// What was taken, its shapes refined on every instant, with such details as held-out blocks confirm.
 fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
     if best.state.guesses.iter().all(|guess| guess.shape.is_empty()) {
         return Some(best);
     }
-    judged(setting, refine_all(setting, best.state)?)
+    let plain = judged(setting, refine_all(setting, best.state)?)?;
+    let detailed = detailed(setting, &plain.state).and_then(|state| judged(setting, state));
+    Some(match detailed {
+        Some(detailed) if detailed.held_out.mean_square() < plain.held_out.mean_square() => detailed,
+        _ => plain,
+    })
+}
+
+/// `state` with the best details of its effects; none where no effect has any.
+fn detailed(setting: &Setting<'_>, state: &State) -> Option<State> {
+    let sampled = setting.sampled();
+    let mut guesses = state.guesses.clone();
+    let mut found = false;
+    for (index, guess) in guesses.iter_mut().enumerate() {
+        let shapes = guess.effect.details(&guess.shape);
+        if shapes.is_empty() {
+            continue;
+        }
+        let rest = sampled.fit_without(state, index)?;
+        let costs = shapes.into_iter().filter_map(|shape| {
+            let guess = Guess { shape, ..guess.clone() };
+            Some((trial::mean_square(&sampled, &rest, &guess)?, guess))
+        });
+        if let Some((_, detailed)) = costs.min_by(|left, right| left.0.total_cmp(&right.0)) {
+            *guess = detailed;
+            found = true;
+        }
+    }
+    if !found {
+        return None;
+    }
+    let thin = refine_all(&sampled, sampled.fit_near(guesses, state)?)?;
+    refine_all(setting, setting.fit_near(thin.guesses, state)?)
 }
 
 /// Refines the shapes of all effects, each with the others as they are.

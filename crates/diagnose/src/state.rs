@@ -1,6 +1,6 @@
 //! A hypothesis fitted to the track.
 
-use pam_core::effects::Role;
+use pam_core::effects::{Memory, Role};
 use pam_core::force::ForceModel;
 use pam_core::force::columns::ForceColumns;
 use pam_core::muscle::Muscle;
@@ -12,8 +12,12 @@ use crate::normal::Normal;
 use crate::sheet::{Ground, Sheet};
 use crate::track::Track;
 
-/// Rounds in which the samples that slack cuts off and the fit settle with one another, at most.
-const CUT_ROUNDS: usize = 8;
+/// Rounds in which what slack leaves of the force and the fit settle with one another, at most.
+const READ_ROUNDS: usize = 8;
+/// A smaller slope is none.
+const LEAST_SLOPE: f64 = 1e-6;
+/// A slope that changes by more has not settled.
+const SLOPE_MOVED: f64 = 0.1;
 
 /// What every fit of a diagnosis shares.
 #[derive(Debug)]
@@ -45,8 +49,60 @@ pub struct State {
     pub fit: JointFit,
     /// Eq. 11 with the parameters of the fit.
     pub model: ForceModel,
-    /// Which instants count, those that slack cuts off included.
-    pub cut: Vec<bool>,
+    /// What the load cell reads, linear around the fit.
+    pub read: Read,
+}
+
+/// What the load cell reads of a force `F` at every instant: `slope F + offset_n`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Read {
+    /// In [0, 1].
+    pub slopes: Vec<f64>,
+    offsets_n: Vec<f64>,
+}
+
+impl Read {
+    /// A cell that reads what there is.
+    fn plain(n: usize) -> Self {
+        Self { slopes: vec![1.0; n], offsets_n: vec![0.0; n] }
+    }
+
+    /// A first guess: what stands near what the cell reads of a slack muscle is slack.
+    fn near_floor(memory: &mut dyn Memory, force_n: &[f64]) -> Self {
+        let highest_n = force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let floor_n = memory.reads(f64::NEG_INFINITY);
+        let near_n = floor_n + 0.02 * (highest_n - floor_n);
+        let is_slack = |force_n: &f64| *force_n < near_n;
+        Self {
+            slopes: force_n.iter().map(|force_n| if is_slack(force_n) { 0.0 } else { 1.0 }).collect(),
+            offsets_n: force_n.iter().map(|force_n| if is_slack(force_n) { floor_n } else { 0.0 }).collect(),
+        }
+    }
+
+    /// Linear around the forces that `weights` make of `sheet`, at the instants that count; the number of those whose slope
+    /// changes by more than a little.
+    fn move_to(&mut self, memory: &mut dyn Memory, sheet: &Sheet, weights: &[f64], counted: &[bool]) -> usize {
+        let mut moved = 0;
+        for (at, row) in sheet.columns.chunks_exact(sheet.width).enumerate().filter(|(at, _)| counted[*at]) {
+            let force_n: f64 = row.iter().zip(weights).map(|(column, weight)| column * weight).sum();
+            // What hardly shows is nothing: rows next to zero are none that a decomposition can be made of.
+            let slope = Some(memory.slope(force_n)).filter(|slope| *slope > LEAST_SLOPE).unwrap_or(0.0);
+            moved += usize::from((slope - self.slopes[at]).abs() > SLOPE_MOVED);
+            self.slopes[at] = slope;
+            self.offsets_n[at] = memory.reads(force_n) - slope * force_n;
+        }
+        moved
+    }
+
+    /// Columns and forces of which the cell reads that much.
+    fn linear(&self, sheet: &Sheet, force_n: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut columns = sheet.columns.clone();
+        for (row, slope) in columns.chunks_exact_mut(sheet.width).zip(&self.slopes).filter(|(_, slope)| **slope != 1.0)
+        {
+            row.iter_mut().for_each(|column| *column *= slope);
+        }
+        (columns, force_n.iter().zip(&self.offsets_n).map(|(force_n, offset_n)| force_n - offset_n).collect())
+    }
 }
 
 impl<'a> Setting<'a> {
@@ -80,9 +136,9 @@ impl<'a> Setting<'a> {
 
     /// Fits `guesses` and the base, starting from `state`.
     pub fn fit_near(&self, guesses: Vec<Guess>, state: &State) -> Option<State> {
-        let was_cut = state.guesses.iter().any(|guess| guess.effect.role() == Role::Reads);
+        let reads = state.guesses.iter().any(|guess| guess.effect.role() == Role::Reads);
         let near = &state.fit.x[..self.space.free.len()];
-        self.fit_from(guesses, near, &state.model, was_cut.then_some(&state.cut))
+        self.fit_from(guesses, near, &state.model, reads.then_some(&state.read))
     }
 
     /// Fits `state` without its effect `index`.
@@ -92,87 +148,47 @@ impl<'a> Setting<'a> {
         self.fit_near(others, state)
     }
 
-    fn fit_from(
-        &self,
-        guesses: Vec<Guess>,
-        near: &[f64],
-        model: &ForceModel,
-        was_cut: Option<&Vec<bool>>,
-    ) -> Option<State> {
+    fn fit_from(&self, guesses: Vec<Guess>, near: &[f64], model: &ForceModel, was: Option<&Read>) -> Option<State> {
         let sheet = self.ground().sheet(&guesses, model);
         let limits = ranges(&guesses);
         let force_n: Vec<f64> = self.track.instants.iter().map(|instant| instant.force_n).collect();
         let reads = guesses.iter().find(|guess| guess.effect.role() == Role::Reads);
-        let mut cut = vec![false; self.track.n()];
+        let mut reads = reads.map(|guess| guess.effect.start(self.muscle, &guess.shape));
         let mut reference = self.columns.weights(model.parameters()).to_vec();
         reference.resize(sheet.width, 0.0);
-        if let (Some(_), Some(was_cut)) = (reads, was_cut) {
-            cut.clone_from(was_cut);
-        } else if let Some(reads) = reads {
-            // Where the load cell stands near what it reads of a slack muscle.
-            let highest_n = force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let mut memory = reads.effect.start(self.muscle, &reads.shape);
-            let floor_n = memory.reads(f64::NEG_INFINITY);
-            let near_n = floor_n + 0.02 * (highest_n - floor_n);
-            for (cut, force_n) in cut.iter_mut().zip(&force_n) {
-                *cut = *force_n < near_n;
-            }
-        }
+        let mut read = match (&mut reads, was) {
+            (None, _) => Read::plain(self.track.n()),
+            (Some(_), Some(was)) => was.clone(),
+            (Some(memory), None) => Read::near_floor(&mut **memory, &force_n),
+        };
         let mut start = near.to_vec();
-        for _ in 0..CUT_ROUNDS {
-            let (columns, forces);
-            let (rows, measured) = match reads {
-                None => (&sheet.columns, &force_n),
-                Some(reads) => {
-                    (columns, forces) = self.cut_off(&sheet, &force_n, &cut, reads);
+        for round in 0..=READ_ROUNDS {
+            let normal = {
+                let (columns, forces);
+                let (rows, measured) = if reads.is_none() {
+                    (&sheet.columns, &force_n)
+                } else {
+                    (columns, forces) = read.linear(&sheet, &force_n);
                     (&columns, &forces)
-                }
+                };
+                Normal::new(self.track, rows, sheet.width, measured, self.counted(), reference.clone())
             };
-            let normal = Normal::new(self.track, rows, sheet.width, measured, self.counted(), reference.clone());
-            let rows = normal.extend(self.track, &[], 0);
-            let fit = self.joint(&limits).fit_all(&rows, &start)?;
-            let model = self.model(&fit);
-            let settled = match reads {
-                None => true,
-                Some(reads) => {
-                    let mut memory = reads.effect.start(self.muscle, &reads.shape);
-                    let mut changed = 0;
-                    for (at, cut) in cut.iter_mut().enumerate().filter(|(at, _)| self.counted()[*at]) {
-                        let row = &sheet.columns[at * sheet.width..(at + 1) * sheet.width];
-                        let force_n: f64 = row.iter().zip(&fit.weights).map(|(column, weight)| column * weight).sum();
-                        let now = memory.cuts(force_n);
-                        changed += usize::from(now != *cut);
-                        let _ = memory.reads(force_n);
-                        *cut = now;
-                    }
-                    changed * 2000 <= self.track.n()
+            let fit = self.joint(&limits).fit_all(&normal.extend(self.track, &[], 0), &start)?;
+            // The last readings have not settled: this fit is under them.
+            let settled = match &mut reads {
+                Some(memory) if round < READ_ROUNDS => {
+                    read.move_to(&mut **memory, &sheet, &fit.weights, self.counted()) * 2000 <= self.track.n()
                 }
+                _ => true,
             };
             if settled {
-                return Some(State { guesses, sheet, normal, fit, model, cut });
+                let model = self.model(&fit);
+                return Some(State { guesses, sheet, normal, fit, model, read });
             }
             start.clone_from(&fit.x);
             reference.clone_from(&fit.weights);
         }
-        // The last mask has not settled: fit once more under it.
-        let reads = reads?;
-        let (rows, measured) = self.cut_off(&sheet, &force_n, &cut, reads);
-        let normal = Normal::new(self.track, &rows, sheet.width, &measured, self.counted(), reference);
-        let fit = self.joint(&limits).fit_all(&normal.extend(self.track, &[], 0), &start)?;
-        let model = self.model(&fit);
-        Some(State { guesses, sheet, normal, fit, model, cut })
-    }
-
-    /// Rows and forces in which what slack cuts off has no slope: its residual is the force less the floor.
-    fn cut_off(&self, sheet: &Sheet, force_n: &[f64], cut: &[bool], reads: &Guess) -> (Vec<f64>, Vec<f64>) {
-        let floor_n = reads.effect.start(self.muscle, &reads.shape).reads(f64::NEG_INFINITY);
-        let mut columns = sheet.columns.clone();
-        let mut forces = force_n.to_vec();
-        for (at, _) in cut.iter().enumerate().filter(|(_, cut)| **cut) {
-            columns[at * sheet.width..(at + 1) * sheet.width].fill(0.0);
-            forces[at] -= floor_n;
-        }
-        (columns, forces)
+        None
     }
 
     /// Fits of `state` that each leave one fold out.
@@ -203,12 +219,13 @@ impl<'a> Setting<'a> {
         Some((joint.fit_all(&rows, &state.fit.x)?, held_out))
     }
 
-    /// Columns of one more guess, zero where slack cuts off, and the ranges of all amplitudes.
+    /// Columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes.
     fn more(&self, state: &State, guess: &Guess) -> (Vec<f64>, Vec<(f64, f64)>) {
         let mut rows = self.ground().more_columns(&state.sheet, guess, &state.model);
         let k = guess.amplitudes().len();
-        for (at, _) in state.cut.iter().enumerate().filter(|(_, cut)| **cut) {
-            rows[at * k..(at + 1) * k].fill(0.0);
+        for (row, slope) in rows.chunks_exact_mut(k.max(1)).zip(&state.read.slopes).filter(|(_, slope)| **slope != 1.0)
+        {
+            row.iter_mut().for_each(|column| *column *= slope);
         }
         let mut limits = ranges(&state.guesses);
         limits.extend(guess.amplitudes().iter().map(|amplitude| amplitude.range));
@@ -217,23 +234,15 @@ impl<'a> Setting<'a> {
 
     /// Residual of every instant, measured less modelled, in N.
     pub fn residuals_n(&self, state: &State) -> Vec<f64> {
-        let width = state.sheet.width;
-        let floor_n = state
-            .guesses
-            .iter()
-            .find(|guess| guess.effect.role() == Role::Reads)
-            .map(|guess| guess.effect.start(self.muscle, &guess.shape).reads(f64::NEG_INFINITY));
+        let (width, read) = (state.sheet.width, &state.read);
         self.track
             .instants
             .iter()
             .enumerate()
             .map(|(at, instant)| {
-                if state.cut[at] {
-                    return instant.force_n - floor_n.unwrap_or(0.0);
-                }
                 let row = &state.sheet.columns[at * width..(at + 1) * width];
                 let model_n: f64 = row.iter().zip(&state.fit.weights).map(|(column, weight)| column * weight).sum();
-                instant.force_n - model_n
+                instant.force_n - read.slopes[at] * model_n - read.offsets_n[at]
             })
             .collect()
     }

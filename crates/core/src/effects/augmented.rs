@@ -326,7 +326,7 @@ mod tests {
         let model = AugmentedModel::new(
             base(),
             vec![
-                term("slack", &[10.0], &[]),
+                term("slack", &[10.0, 0.0], &[]),
                 term("viscous-damping", &[], &[1e4, 0.0]),
                 term("threshold-pressure", &[5e4], &[]),
             ],
@@ -356,7 +356,7 @@ mod tests {
             base(),
             vec![
                 term("force-drift", &[30.0], &[0.1, 0.0]),
-                term("slack", &[0.0], &[]),
+                term("slack", &[0.0, 0.0], &[]),
                 term("pressure-lag", &[0.05], &[]),
                 term("force-step", &[0.0, 1.0], &[3.0]),
             ],

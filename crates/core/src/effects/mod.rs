@@ -165,6 +165,12 @@ pub trait Effect: Sync {
         shapes
     }
 
+    /// Shapes in the place of `shape` that a fit looks at when every effect is named: details that would stand in for other
+    /// effects before.
+    fn details(&self, _shape: &[f64]) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
     /// Whether its pull needs the slopes of [`Base`], which cost four more evaluations of eq. 11.
     fn uses_slopes(&self) -> bool {
         false
@@ -200,8 +206,13 @@ pub trait Memory: Send {
         force_n
     }
 
-    /// Whether [`reads`](Self::reads) leaves nothing of changes of the force there.
-    fn cuts(&self, _force_n: f64) -> bool {
-        false
+    /// How much of a small change of the force [`reads`](Self::reads) leaves there, in [0, 1].
+    fn slope(&self, _force_n: f64) -> f64 {
+        1.0
+    }
+
+    /// Whether it leaves less than half.
+    fn cuts(&self, force_n: f64) -> bool {
+        self.slope(force_n) < 0.5
     }
 }

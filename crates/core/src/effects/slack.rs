@@ -1,7 +1,7 @@
 //! Slack: a cable or a soft muscle cannot push, so the load cell reads a floor.
 //!
 //! ```text
-//! F_read = max(F, F_floor)
+//! F_read = F_floor + w ln(1 + e^{(F - F_floor) / w}),   max(F, F_floor) where w = 0
 //! ```
 
 use super::page::{Confusion, Page, Symbol};
@@ -11,6 +11,12 @@ use crate::muscle::Muscle;
 
 /// Lowest and highest floor, in N: what is hung on the cell, with its tare.
 const RANGE_N: (f64, f64) = (-50.0, 50.0);
+
+/// Softnesses that are tried when every effect is named, in N.
+const SOFTNESSES_N: [f64; 4] = [2.0, 5.0, 10.0, 20.0];
+
+/// Below it the end is sharp, in N.
+const SHARP_N: f64 = 1e-3;
 
 /// The effect.
 #[derive(Debug)]
@@ -30,30 +36,47 @@ impl Effect for Slack {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "floor_n", unit: "N", range: RANGE_N, grid: &[0.0] }]
+        &[
+            Shape { name: "floor_n", unit: "N", range: RANGE_N, grid: &[0.0] },
+            Shape { name: "softness_n", unit: "N", range: (0.0, 60.0), grid: &[0.0] },
+        ]
     }
 
     fn first_shapes(&self, seen: &Seen) -> Vec<Vec<f64>> {
         let lowest_n = seen.force_n.0.clamp(RANGE_N.0, RANGE_N.1);
-        if lowest_n == 0.0 { vec![vec![0.0]] } else { vec![vec![lowest_n], vec![0.0]] }
+        if lowest_n == 0.0 { vec![vec![0.0; 2]] } else { vec![vec![lowest_n, 0.0], vec![0.0; 2]] }
+    }
+
+    fn details(&self, shape: &[f64]) -> Vec<Vec<f64>> {
+        SOFTNESSES_N.map(|softness_n| vec![shape[0], softness_n]).into()
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { floor_n: shape[0] })
+        Box::new(State { floor_n: shape[0], softness_n: shape[1] })
     }
 }
 
 struct State {
     floor_n: f64,
+    softness_n: f64,
 }
 
 impl Memory for State {
     fn reads(&mut self, force_n: f64) -> f64 {
-        force_n.max(self.floor_n)
+        let above_n = force_n - self.floor_n;
+        if self.softness_n < SHARP_N {
+            return force_n.max(self.floor_n);
+        }
+        // The same without overflow.
+        self.floor_n + above_n.max(0.0) + self.softness_n * (-above_n.abs() / self.softness_n).exp().ln_1p()
     }
 
-    fn cuts(&self, force_n: f64) -> bool {
-        force_n < self.floor_n
+    fn slope(&self, force_n: f64) -> f64 {
+        let above_n = force_n - self.floor_n;
+        if self.softness_n < SHARP_N {
+            return f64::from(u8::from(above_n >= 0.0));
+        }
+        1.0 / (1.0 + (-above_n / self.softness_n).exp())
     }
 }
 
@@ -62,16 +85,24 @@ static PAGE: Page = Page {
     name: "slack",
     summary: "A cable goes slack and a soft muscle buckles before either pushes, so the load cell reads its floor \
               wherever the model has the muscle push.",
-    equation: "F = max(F_base(p, L), F_floor)",
-    symbols: &[Symbol {
-        symbol: "F_floor",
-        unit: "N",
-        meaning: "what the cell reads of a slack muscle: its tare and the weight that hangs on it; -5 to 5 N",
-    }],
-    validity: "A cable without mass and a sharp end; dead length that has to be taken up again is left out.",
+    equation: "F = F_floor + w ln(1 + exp((F_base - F_floor) / w)),  max(F_base, F_floor) where w = 0",
+    symbols: &[
+        Symbol {
+            symbol: "F_floor",
+            unit: "N",
+            meaning: "what the cell reads of a slack muscle: its tare and the weight that hangs on it; -5 to 5 N",
+        },
+        Symbol {
+            symbol: "w",
+            unit: "N",
+            meaning: "softness: a bent muscle straightens bit by bit before it is taut; 0 for a cable, 5 to 20 N for a stiff \
+                      muscle",
+        },
+    ],
+    validity: "A cable without mass; dead length that has to be taken up again is left out.",
     source: "unilateral contact; Fichter (1966), NASA TN D-3466, for inflated tubes that buckle",
     signature: "The force is flat while pressure or length move, at low pressure or large contraction, and the residual \
-                there is the negative force of the model, exactly.",
+                there is the negative force of the model.",
     confused_with: &[
         Confusion {
             id: "threshold-pressure",
@@ -97,15 +128,29 @@ mod tests {
 
     #[test]
     fn it_reads_a_pull_and_no_push() {
-        let mut memory = Slack.start(&nominal(), &[-1.5]);
+        let mut memory = Slack.start(&nominal(), &[-1.5, 0.0]);
         assert_eq!([memory.reads(20.0), memory.reads(-1.0), memory.reads(-30.0)], [20.0, -1.0, -1.5]);
         assert!(memory.cuts(-30.0) && !memory.cuts(-1.0));
+    }
+
+    #[test]
+    fn a_soft_end_is_smooth_and_far_from_it_there_is_none() {
+        let (mut soft, mut sharp) = (Slack.start(&nominal(), &[2.0, 5.0]), Slack.start(&nominal(), &[2.0, 0.0]));
+        for force_n in [-900.0, -100.0, 110.0, 900.0] {
+            assert!((soft.reads(force_n) - sharp.reads(force_n)).abs() < 1e-6);
+        }
+        assert!((soft.reads(2.0) - (2.0 + 5.0 * 2.0_f64.ln())).abs() < 1e-12);
+        for force_n in [-20.0, 1.0, 2.0, 15.0] {
+            let slope = (soft.reads(force_n + 1e-4) - soft.reads(force_n - 1e-4)) / 2e-4;
+            assert!((soft.slope(force_n) - slope).abs() < 1e-6);
+        }
     }
 
     #[test]
     fn a_fit_looks_at_the_lowest_force_and_at_zero() {
         let seen =
             Seen { contraction_ratio: (0.0, 0.2), pressure_pa: (0.0, 5e5), force_n: (-2.5, 900.0), duration_s: 60.0 };
-        assert_eq!(Slack.first_shapes(&seen), [[-2.5], [0.0]]);
+        assert_eq!(Slack.first_shapes(&seen), [[-2.5, 0.0], [0.0, 0.0]]);
+        assert!(Slack.details(&[-2.5, 0.0]).iter().all(|shape| shape[0] == -2.5 && shape[1] > 0.0));
     }
 }
