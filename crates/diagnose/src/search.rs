@@ -214,6 +214,9 @@ fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
     })
 }
 
+/// Rounds in which details and the other shapes settle with one another.
+const DETAIL_SWEEPS: usize = 4;
+
 /// `state` with the best details of its effects; none where no effect has any.
 fn detailed(setting: &Setting<'_>, state: &State) -> Option<State> {
     let sampled = setting.sampled();
@@ -237,7 +240,10 @@ fn detailed(setting: &Setting<'_>, state: &State) -> Option<State> {
     if !found {
         return None;
     }
-    let thin = refine_all(&sampled, sampled.fit_near(guesses, state)?)?;
+    let mut thin = sampled.fit_near(guesses, state)?;
+    for _ in 0..DETAIL_SWEEPS {
+        thin = refine_all(&sampled, thin)?;
+    }
     refine_all(setting, setting.fit_near(thin.guesses, state)?)
 }
 
