@@ -94,16 +94,15 @@ static PAGE: Page = Page {
         Symbol {
             symbol: "m",
             unit: "kg",
-            meaning: "mass between muscle and cell, 0.1 to 1.5 kg, more with weights or a sled; negative where the \
-                      acceleration is that of a frame which moves the other way",
+            meaning: "mass between muscle and cell, 0.1 to 1.5 kg, more with a sled; negative on a frame that moves \
+                      the other way",
         },
         Symbol { symbol: "a", unit: "m/s²", meaning: "acceleration of contraction, -d²L/dt²" },
         Symbol { symbol: "b", unit: "m/s²", meaning: "acceleration of the mass" },
         Symbol {
             symbol: "f",
             unit: "Hz",
-            meaning: "natural frequency of the mount, critically damped: 15 to 60 Hz for a clamp on a drive; 200 Hz is \
-                      as good as rigid",
+            meaning: "natural frequency of the critically damped mount: 15 to 60 Hz for a clamp; rigid at 200 Hz",
         },
     ],
     validity: "One resonance, well damped. With the cell at the fixed end some 30 g are all there is.",
