@@ -128,35 +128,9 @@ impl Knocks {
     }
 
     fn fitted(knocks: &[Knock], n_rows: usize, floor_n: f64) -> Option<Self> {
-        let sums_at = |mount_hz: f64| -> Vec<Sums> { knocks.iter().map(|knock| knock.sums(mount_hz)).collect() };
-        let left = |sums: &[Sums]| Sums::total(sums).left();
-        let mut best: (f64, f64, Vec<Sums>) = (f64::INFINITY, 0.0, Vec::new());
-        let look = |mount_hz: f64, best: &mut (f64, f64, Vec<Sums>)| {
-            let sums = sums_at(mount_hz);
-            if left(&sums) < best.0 {
-                *best = (left(&sums), mount_hz, sums);
-            }
-        };
-        for mount_hz in MOUNTS_HZ {
-            look(mount_hz, &mut best);
-        }
-        let mut factor: f64 = 1.12;
-        for _ in 0..ROUNDS {
-            let center = best.1;
-            for mount_hz in [center / factor, center * factor] {
-                look(mount_hz.clamp(MOUNTS_HZ[0], MOUNTS_HZ[MOUNTS_HZ.len() - 1]), &mut best);
-            }
-            factor = factor.sqrt();
-        }
-        let (_, mount_hz, sums) = best;
-        let total = Sums::total(&sums);
-        let others: Vec<f64> = (0..FOLDS)
-            .map(|fold| {
-                let rest: Vec<Sums> =
-                    sums.iter().enumerate().filter(|(index, _)| index % FOLDS != fold).map(|(_, sums)| *sums).collect();
-                Sums::total(&rest).slope()
-            })
-            .collect();
+        let (mount_hz, sums) = Self::mounted(knocks);
+        let rest = |fold: usize| sums.iter().enumerate().filter(move |(index, _)| index % FOLDS != fold);
+        let others: Vec<f64> = (0..FOLDS).map(|fold| Sums::total(rest(fold).map(|(_, sums)| sums)).slope()).collect();
         let mean = others.iter().sum::<f64>() / FOLDS as f64;
         let n = FOLDS as f64;
         let variance = (n - 1.0) / n * others.iter().map(|slope| (slope - mean).powi(2)).sum::<f64>();
@@ -171,22 +145,48 @@ impl Knocks {
             counts,
         };
         let explained = without.mean_square() - with.mean_square();
-        let believed = explained > EXPLAINED * without.mean_square()
+        // The columns of the effect are the negative acceleration.
+        let mass_kg = -Sums::total(&sums).slope();
+        let (lightest_kg, heaviest_kg) = Self::effect().amplitudes()[0].range;
+        let believed = (lightest_kg..=heaviest_kg).contains(&mass_kg)
+            && explained > EXPLAINED * without.mean_square()
             && explained > (TIMES_FLOOR * floor_n).powi(2)
             && chance(&without, &with) < CHANCE;
         let mut speeds: Vec<f64> = knocks.iter().map(|knock| knock.fastest_m_per_s).collect();
         speeds.sort_by(f64::total_cmp);
         believed.then(|| Self {
-            // The columns of the effect are the negative acceleration.
-            mass_kg: -total.slope(),
+            mass_kg,
             mass_stderr_kg: variance.sqrt(),
             mount_hz,
-            all_rows_n: (explained * total.rows / n_rows.max(1) as f64).sqrt(),
+            all_rows_n: (explained * Sums::total(&sums).rows / n_rows.max(1) as f64).sqrt(),
             without,
             with,
             touched: knocks.iter().map(|knock| knock.place.clone()).collect(),
             speeds_m_per_s: (speeds[speeds.len() / 20], speeds[speeds.len() - 1]),
         })
+    }
+
+    /// The mount that explains most of `knocks`, in Hz, and the sums behind it.
+    fn mounted(knocks: &[Knock]) -> (f64, Vec<Sums>) {
+        let tried = |mount_hz: f64| {
+            let sums: Vec<Sums> = knocks.iter().map(|knock| knock.sums(mount_hz)).collect();
+            (Sums::total(&sums).left(), mount_hz, sums)
+        };
+        let better = |best: (f64, f64, Vec<Sums>), mount_hz: f64| {
+            let trial = tried(mount_hz);
+            if trial.0 < best.0 { trial } else { best }
+        };
+        let (softest, stiffest) = (MOUNTS_HZ[0], MOUNTS_HZ[MOUNTS_HZ.len() - 1]);
+        let mut best = MOUNTS_HZ.into_iter().fold((f64::INFINITY, softest, Vec::new()), better);
+        let mut factor: f64 = 1.12;
+        for _ in 0..ROUNDS {
+            let center = best.1;
+            best = [center / factor, center * factor]
+                .into_iter()
+                .fold(best, |best, mount_hz| better(best, mount_hz.clamp(softest, stiffest)));
+            factor = factor.sqrt();
+        }
+        (best.1, best.2)
     }
 
     /// The effect.
@@ -321,8 +321,8 @@ struct Sums {
 }
 
 impl Sums {
-    fn total(sums: &[Self]) -> Self {
-        sums.iter().fold(Self::default(), |total, sums| Self {
+    fn total<'a>(sums: impl IntoIterator<Item = &'a Self>) -> Self {
+        sums.into_iter().fold(Self::default(), |total, sums| Self {
             rows: total.rows + sums.rows,
             yy: total.yy + sums.yy,
             aa: total.aa + sums.aa,

@@ -35,7 +35,12 @@ impl EffectEntry {
         let mut values = Vec::with_capacity(expected.len());
         for (name, unit, (lowest, highest)) in expected {
             let mut entries = self.parameters.iter().filter(|entry| entry.name == name);
-            let entry = entries.next().ok_or_else(|| format!("effect {} lacks its parameter {name}", self.id))?;
+            let entry = entries.next().ok_or_else(|| {
+                format!(
+                    "effect {} lacks its parameter {name}; a model of an earlier catalogue has to be diagnosed again",
+                    self.id
+                )
+            })?;
             if entries.next().is_some() {
                 return Err(format!("parameter {name} of effect {} stands there twice", self.id));
             }

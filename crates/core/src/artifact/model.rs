@@ -466,7 +466,7 @@ mod tests {
         ];
         insta::assert_snapshot!(messages.join("\n"), @r#"
         effect "stribek" is unknown; the nearest are stribeck, slack, inertia
-        effect rubber-hysteresis lacks its parameter slip_distance_m
+        effect rubber-hysteresis lacks its parameter slip_distance_m; a model of an earlier catalogue has to be diagnosed again
         effect rubber-hysteresis has no parameter slope; it has slip_distance_m, width_n
         parameter width_n of effect rubber-hysteresis stands there twice
         parameter slip_distance_m of effect rubber-hysteresis is in mm; write it in m
