@@ -1,13 +1,19 @@
 //! Stribeck effect: friction that is larger at a crawl than in motion.
 //!
 //! ```text
-//! F = F_base - s f_s p π D L exp(-|v| / v_s)
+//! F = F_base - s f_s p π D L h,   dh/|dx| = (exp(-|v| / v_s) - h) / δ,   δ = 0.1 mm
 //! ```
+//!
+//! Friction follows the speed with the travel that renews the contacts: a stop from full speed leaves it small until the next
+//! move, as a rest does not push.
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
+
+/// Travel over which contacts are renewed, in m (Rabinowicz 1951: 10 to 100 µm).
+const RENEWAL_M: f64 = 1e-4;
 
 /// The effect.
 #[derive(Debug)]
@@ -40,18 +46,27 @@ impl Effect for Stribeck {
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { stribeck_speed_m_per_s: shape[0] })
+        Box::new(State { stribeck_speed_m_per_s: shape[0], last: None })
     }
 }
 
 struct State {
     stribeck_speed_m_per_s: f64,
+    /// Recording, slide and `h` of the moment before.
+    last: Option<(usize, f64, f64)>,
 }
 
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
         let crawl = (-now.slide_speed_m_per_s.abs() / self.stribeck_speed_m_per_s).exp();
-        columns[0] = -now.direction * base.normal_n * crawl;
+        let level = match self.last {
+            Some((recording, slide_m, level)) if recording == now.recording => {
+                crawl + (level - crawl) * (-(now.slide_m - slide_m).abs() / RENEWAL_M).exp()
+            }
+            _ => crawl,
+        };
+        self.last = Some((now.recording, now.slide_m, level));
+        columns[0] = -now.direction * base.normal_n * level;
     }
 }
 
@@ -60,7 +75,7 @@ static PAGE: Page = Page {
     name: "Stribeck effect",
     summary: "Friction of the braid is larger at a crawl than in motion. It falls with the speed over some millimetres \
               per second and breaks away behind a rest, which makes slow motion under a soft load jerky.",
-    equation: "F = F_base - s f_s p π D L exp(-|v| / v_s)",
+    equation: "F = F_base - s f_s p π D L h,  dh/|dx| = (exp(-|v| / v_s) - h) / δ,  δ = 0.1 mm",
     symbols: &[
         Symbol {
             symbol: "f_s",
@@ -70,6 +85,7 @@ static PAGE: Page = Page {
         Symbol { symbol: "v_s", unit: "m/s", meaning: "speed at which 63 % of it are gone; 1 to 20 mm/s" },
         Symbol { symbol: "s", unit: "1", meaning: "direction of motion, kept at standstill" },
         Symbol { symbol: "v", unit: "m/s", meaning: "speed of contraction" },
+        Symbol { symbol: "h", unit: "1", meaning: "1 at a crawl, 0 in motion; it follows with the travel" },
     ],
     validity: "Motion that is long against the pre-sliding distance; the age of a contact at rest is left out.",
     source: "Tondu and Lopez (2000), IEEE Control Systems 20(2), for threads on threads; Armstrong-Hélouvry, Dupont and \
@@ -107,11 +123,25 @@ mod tests {
 
     #[test]
     fn it_falls_from_static_friction_to_nothing() {
-        let mut memory = Stribeck.start(&nominal(), &[5e-3]);
-        let mut at = |slide_speed_m_per_s| pull(&mut *memory, &Moment { slide_speed_m_per_s, ..still() }, &base())[0];
+        let at = |slide_speed_m_per_s| {
+            let mut memory = Stribeck.start(&nominal(), &[5e-3]);
+            pull(&mut *memory, &Moment { slide_speed_m_per_s, ..still() }, &base())[0]
+        };
         assert_eq!(at(0.0), -base().normal_n);
         assert!((at(5e-3) / at(0.0) - (-1.0_f64).exp()).abs() < 1e-12);
         assert!(at(1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_stop_leaves_it_as_it_was_and_a_crawl_renews_it() {
+        let mut memory = Stribeck.start(&nominal(), &[5e-3]);
+        let mut at = |slide_m, slide_speed_m_per_s| {
+            pull(&mut *memory, &Moment { slide_m, slide_speed_m_per_s, ..still() }, &base())[0] / -base().normal_n
+        };
+        assert!(at(0.0, 1.0) < 1e-12);
+        assert!(at(0.0, 0.0) < 1e-12);
+        assert!((at(RENEWAL_M, 0.0) - (1.0 - (-1.0_f64).exp())).abs() < 1e-9);
+        assert!(at(30.0 * RENEWAL_M, 0.0) > 1.0 - 1e-9);
     }
 
     #[test]
