@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_muscle_at_rest_has_its_settled_force_and_forgets_on_the_way_there() {
-        let relaxing = with_effect("viscoelastic-relaxation", &[0.3], &[0.5, 0.0]);
+        let relaxing = with_effect("viscoelastic-relaxation", &[0.3], &[0.5, 0.0, 0.0]);
         let mut history = History::new(relaxing.clone());
         let settled_n = relaxing.settled_force_n(1e5, 0.25, 1.0);
         assert!((history.advance(0.0, 1e5, 0.25, 1.0) - settled_n).abs() < 1e-9);

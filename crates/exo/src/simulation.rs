@@ -201,8 +201,8 @@ mod tests {
         let plain = AugmentedModel::from(nominal_model());
         let without_rad = lift(&plain, &plain, true).0;
         for plant in [
-            with_effect("viscoelastic-relaxation", &[0.3], &[0.3, 0.2]),
-            with_effect("pressure-creep", &[1.0], &[0.1, 0.1]),
+            with_effect("viscoelastic-relaxation", &[0.3], &[0.3, 0.2, 0.1]),
+            with_effect("pressure-creep", &[1.0, 0.0], &[0.1, 0.1, 0.1]),
             with_effect("viscous-damping", &[], &[500.0, 0.0]),
         ] {
             assert!(lift(&plain, &plant, true).0 > 3.0 * without_rad);
@@ -216,7 +216,7 @@ mod tests {
         let plain = AugmentedModel::from(nominal_model());
         let (threshold, relaxing) = (
             with_effect("threshold-pressure", &[4e4], &[]),
-            with_effect("viscoelastic-relaxation", &[0.3], &[0.3, 0.2]),
+            with_effect("viscoelastic-relaxation", &[0.3], &[0.3, 0.2, 0.1]),
         );
         assert!(lift(&threshold, &threshold, true).0 < 0.2 * lift(&plain, &threshold, true).0);
         let remembering_rad = lift(&relaxing, &relaxing, true).0;
