@@ -307,7 +307,8 @@ fn reworked(desk: &Desk, name: &str, change: impl Fn([f64; 4]) -> [f64; 4]) -> S
 
 #[test]
 fn every_mistake_gets_one_line_with_place_and_remedy() {
-    let desk = Desk::plain();
+    // One of its own: other tests write beside the shared one while a refusal looks for leftovers.
+    let desk = &Desk::with(&[]);
     let triangles = "isobaric-triangles.csv";
     desk.file("copy.csv", std::fs::read(desk.path(triangles)).unwrap());
     desk.file("rewritten.csv", reworked(desk, triangles, |row| row));
