@@ -13,7 +13,7 @@ use pam_core::artifact::diagnosis::{Coordinate, Region};
 use pam_core::artifact::model::ParameterEntry;
 use pam_core::direction::Thresholds;
 use pam_core::effects::{AugmentedModel, Effect, Mount, Term, effect};
-use pam_core::motion::acceleration_weights;
+use pam_core::smoothing::acceleration_weights;
 use pam_identification::error::IdentifyError;
 use pam_identification::predict::walk_augmented;
 use pam_identification::prepare::Prepared;

@@ -6,7 +6,8 @@
 use pam_core::effects::Moment;
 use pam_core::effects::moment::SLIDE_M_PER_PA;
 use pam_core::force::ForceModel;
-use pam_core::motion::{HALF_WINDOW_S, Instant};
+use pam_core::motion::Instant;
+use pam_core::smoothing::HALF_WINDOW_S;
 
 use crate::protocols::{Reach, Take};
 use crate::track::Track;
