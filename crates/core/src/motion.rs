@@ -81,8 +81,9 @@ pub fn walk(
                 by_pressure_m += SLIDE_M_PER_PA * pressure_step_pa;
             }
             last = Some((rows.time_s[at], average_pa));
-            let contraction_m = contraction.follow(rest_length_m - average.at(&rows.length_m, at));
-            let slide_m = slide.follow(rest_length_m - average.at(&rows.length_m, at) + by_pressure_m);
+            let shortened_m = rest_length_m - average.at(&rows.length_m, at);
+            let contraction_m = contraction.follow(shortened_m);
+            let slide_m = slide.follow(shortened_m + by_pressure_m);
             let smooth = channels == Channels::Smooth;
             let choose = |smooth_value: f64, recorded: f64| if smooth { smooth_value } else { recorded };
             let force_n = choose(force.value, rows.force_n.get(at).copied().unwrap_or(0.0));
