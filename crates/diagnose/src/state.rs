@@ -1,6 +1,6 @@
 //! A hypothesis fitted to the track.
 
-use pam_core::effects::{Memory, Role};
+use pam_core::effects::{Memory, Role, Term};
 use pam_core::force::ForceModel;
 use pam_core::force::columns::ForceColumns;
 use pam_core::muscle::Muscle;
@@ -51,6 +51,24 @@ pub struct State {
     pub model: ForceModel,
     /// What the load cell reads, linear around the fit.
     pub read: Read,
+}
+
+impl State {
+    /// The effects with their values, as a model evaluates them.
+    pub fn terms(&self) -> Vec<Term> {
+        let mut values = self.fit.amplitudes.iter();
+        let term = |guess: &Guess| Term {
+            effect: guess.effect,
+            shape: guess.shape.clone(),
+            amplitudes: guess
+                .amplitudes()
+                .iter()
+                .zip(values.by_ref())
+                .map(|(amplitude, value)| value.clamp(amplitude.range.0, amplitude.range.1))
+                .collect(),
+        };
+        self.guesses.iter().map(term).collect()
+    }
 }
 
 /// What the load cell reads of a force `F` at every instant: `slope F + offset_n`.
