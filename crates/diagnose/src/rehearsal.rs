@@ -287,8 +287,8 @@ pub(crate) mod tests {
             weights.extend(effects.iter().flat_map(|(_, _, amplitudes)| amplitudes.iter()));
             let sheet =
                 Ground { track: &given.track, columns: &given.columns, only: None }.sheet(&guesses, &given.model);
-            for (instant, row) in given.track.instants.iter_mut().zip(sheet.columns.chunks_exact(sheet.width)) {
-                instant.force_n = row.iter().zip(&weights).map(|(column, weight)| column * weight).sum();
+            for (at, instant) in given.track.instants.iter_mut().enumerate() {
+                instant.force_n = sheet.force_n(at, &weights);
                 instant.moment.force_n = instant.force_n;
             }
             given
