@@ -13,4 +13,5 @@ pub mod muscle;
 pub mod quality;
 pub mod recording;
 pub mod shift;
+pub mod smoothing;
 pub mod spelling;

@@ -1,8 +1,7 @@
 //! How a recording moves: its channels smooth, with their rates, as effects see them.
 //!
-//! Rates of noisy channels come from a parabola fitted to a centered window of [`HALF_WINDOW_S`] to either side
-//! (Savitzky and Golay, 1964): value, slope and curvature in one go, the same window for every channel, so that smoothing
-//! shifts none against the other.
+//! Values, rates and the acceleration come from parabolas, contraction and slide, which effects remember, from averages
+//! that never overshoot: see [`crate::smoothing`].
 
 use std::io;
 
@@ -10,12 +9,10 @@ use crate::direction::{Direction, Thresholds};
 use crate::effects::Moment;
 use crate::effects::moment::SLIDE_M_PER_PA;
 use crate::recording::Recording;
+use crate::smoothing::{Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Parabola, Window};
 
-/// Half of the window of the parabola that rates come from, in s; at least four samples and at most fifty to either side.
-pub const HALF_WINDOW_S: f64 = 0.04;
-/// The same for the values themselves, which need less smoothing than their rates, and for the acceleration, which lasts
-/// no longer where a rig starts or stops.
-pub const HALF_VALUE_WINDOW_S: f64 = 0.02;
+/// Six deviations of the noise, from peak to peak, over a threshold of the direction, which is five.
+const NOISE_PER_THRESHOLD: f64 = 1.2;
 
 /// One row of a recording with everything that effects need.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,8 +81,9 @@ pub fn walk(
                 by_pressure_m += SLIDE_M_PER_PA * pressure_step_pa;
             }
             last = Some((rows.time_s[at], average_pa));
-            let contraction_m = contraction.follow(rest_length_m - average.at(&rows.length_m, at));
-            let slide_m = slide.follow(rest_length_m - average.at(&rows.length_m, at) + by_pressure_m);
+            let shortened_m = rest_length_m - average.at(&rows.length_m, at);
+            let contraction_m = contraction.follow(shortened_m);
+            let slide_m = slide.follow(shortened_m + by_pressure_m);
             let smooth = channels == Channels::Smooth;
             let choose = |smooth_value: f64, recorded: f64| if smooth { smooth_value } else { recorded };
             let force_n = choose(force.value, rows.force_n.get(at).copied().unwrap_or(0.0));
@@ -154,184 +152,6 @@ impl Rows {
     }
 }
 
-/// Weights with which the acceleration of an [`Instant`] averages the true one over the rows around, at a period of
-/// `period_s`: a force that is to be compared with it has to be averaged alike. They are symmetric and sum to one.
-///
-/// The curvature of a parabola is a weighted sum of values; summing those weights up twice gives the weights of second
-/// differences.
-pub fn acceleration_weights(period_s: f64) -> Vec<f64> {
-    let half = half_rows(HALF_VALUE_WINDOW_S, period_s) as i32;
-    let rows = -half..=half;
-    let mean = rows.clone().map(|u| f64::from(u * u)).sum::<f64>() / f64::from(2 * half + 1);
-    let (mut slope, mut weight) = (0.0, 0.0);
-    // The first and the last would be zero: a straight line has no curvature.
-    let weights: Vec<f64> = rows
-        .map(|u| {
-            weight += slope;
-            slope += f64::from(u * u) - mean;
-            weight
-        })
-        .skip(1)
-        .take(2 * half as usize - 1)
-        .collect();
-    let sum: f64 = weights.iter().sum();
-    weights.iter().map(|weight| weight / sum).collect()
-}
-
-/// Rows to either side that a slope comes from at least.
-const LEAST_HALF: usize = 2;
-
-/// Half of a window of `half_s` to either side, in rows.
-fn half_rows(half_s: f64, period_s: f64) -> usize {
-    ((half_s / period_s).round() as usize).clamp(4, 50)
-}
-
-/// A channel around one row.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Parabola {
-    value: f64,
-    /// Per second.
-    slope: f64,
-    /// Second derivative, per second squared.
-    curvature: f64,
-}
-
-/// An average with positive weights, for what remembers its path: a parabola overshoots behind a step, which would be a
-/// reversal that never was.
-struct Average {
-    weights: Vec<f64>,
-}
-
-impl Average {
-    fn over(time_s: &[f64]) -> Self {
-        Self { weights: acceleration_weights(period_s(time_s)) }
-    }
-
-    fn at(&self, channel: &[f64], at: usize) -> f64 {
-        let half = self.weights.len() / 2;
-        let origin = channel[at];
-        let sum: f64 = self
-            .weights
-            .iter()
-            .enumerate()
-            .map(|(index, weight)| {
-                weight * (channel[(at + index).max(half).min(half + channel.len() - 1) - half] - origin)
-            })
-            .sum();
-        origin + sum
-    }
-
-    /// Deviation of an average over that of the white noise of its rows.
-    fn share_of_noise(&self) -> f64 {
-        self.weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
-    }
-}
-
-/// Six deviations of the noise, from peak to peak, over a threshold of the direction, which is five.
-const NOISE_PER_THRESHOLD: f64 = 1.2;
-
-/// What follows a channel but does not turn back for its noise: to what remembers its path, noise at rest would be a way to
-/// and fro. It has no lag while it goes on one way.
-struct Onward {
-    /// A way back that is none.
-    noise: f64,
-    position: f64,
-    /// ±1; 0 before the first move.
-    way: f64,
-}
-
-impl Onward {
-    fn new(noise: f64) -> Self {
-        Self { noise, position: f64::NAN, way: 0.0 }
-    }
-
-    fn follow(&mut self, to: f64) -> f64 {
-        let by = to - self.position;
-        if by.is_nan() {
-            self.position = to;
-        } else if by * self.way > 0.0 || by.abs() > self.noise {
-            self.position = to;
-            self.way = by.signum();
-        }
-        self.position
-    }
-}
-
-/// Time between evenly sampled rows, in s.
-fn period_s(time_s: &[f64]) -> f64 {
-    let n_rows = time_s.len();
-    if n_rows > 1 { (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1) as f64 } else { 1.0 }
-}
-
-/// The window of the parabola over evenly sampled rows.
-struct Window {
-    half: usize,
-    period_s: f64,
-    n_rows: usize,
-    /// `Σ u²` and the determinant terms of the normal equations over `u = -half..=half`.
-    sum2: f64,
-    sum4: f64,
-}
-
-impl Window {
-    fn over(time_s: &[f64], half_s: f64) -> Self {
-        let n_rows = time_s.len();
-        let period_s = period_s(time_s);
-        let half = half_rows(half_s, period_s);
-        let h = half as f64;
-        let sum2 = h * (h + 1.0) * (2.0 * h + 1.0) / 3.0;
-        let sum4 = sum2 * (3.0 * h * h + 3.0 * h - 1.0) / 5.0;
-        Self { half, period_s, n_rows, sum2, sum4 }
-    }
-
-    /// The parabola at row `at`; near the ends that of the nearest whole window, carried on.
-    fn parabola(&self, channel: &[f64], at: usize) -> Parabola {
-        if channel.is_empty() {
-            return Parabola::default();
-        }
-        let width = 2 * self.half + 1;
-        if self.n_rows < width {
-            return Parabola { value: channel[at], ..Parabola::default() };
-        }
-        let center = at.clamp(self.half, self.n_rows - 1 - self.half);
-        let origin = channel[center];
-        let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
-        for (offset, value) in channel[center - self.half..=center + self.half].iter().enumerate() {
-            let u = offset as f64 - self.half as f64;
-            let value = value - origin;
-            sum += value;
-            first += u * value;
-            second += u * u * value;
-        }
-        let n = width as f64;
-        let determinant = n * self.sum4 - self.sum2 * self.sum2;
-        let c0 = (self.sum4 * sum - self.sum2 * second) / determinant;
-        let c1 = first / self.sum2;
-        let c2 = (n * second - self.sum2 * sum) / determinant;
-        let u = at as f64 - center as f64;
-        Parabola {
-            value: origin + c0 + c1 * u + c2 * u * u,
-            slope: if u == 0.0 { c1 / self.period_s } else { self.slope_near_end(channel, at) },
-            curvature: 2.0 * c2 / (self.period_s * self.period_s),
-        }
-    }
-
-    /// The slope at a row nearer to an end than half a window: that of the widest window around it, where the parabola
-    /// carried on would make a turn in it twice the turn that it is. The last two rows take that of their neighbor.
-    fn slope_near_end(&self, channel: &[f64], at: usize) -> f64 {
-        let last = channel.len() - 1;
-        let center = at.clamp(LEAST_HALF, last - LEAST_HALF);
-        let half = self.half.min(center).min(last - center);
-        let (mut first, mut squares) = (0.0, 0.0);
-        for u in 1..=half {
-            let distance = u as f64;
-            first += distance * (channel[center + u] - channel[center - u]);
-            squares += 2.0 * distance * distance;
-        }
-        first / (squares * self.period_s)
-    }
-}
-
 /// Time to either side in which a length that stands still does not move, in s. The direction waits for longer, because it is
 /// wrong for long where it is wrong; what slides under pressure slides at once.
 const STILL_S: f64 = 0.1;
@@ -365,75 +185,5 @@ impl Still {
             high = high.max(length);
         }
         high - low <= self.threshold_m
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_acceleration_is_the_true_one_averaged() {
-        let period_s = 0.005;
-        let weights = acceleration_weights(period_s);
-        let half = weights.len() / 2;
-        assert!(weights.iter().all(|weight| *weight > 0.0));
-        // Second differences of any row of numbers are its accelerations.
-        let channel: Vec<f64> = (0..60).map(|row| f64::from(row * row * 37 % 101)).collect();
-        let window =
-            Window::over(&(0..60).map(|row| f64::from(row) * period_s).collect::<Vec<_>>(), HALF_VALUE_WINDOW_S);
-        let averaged: f64 = weights
-            .iter()
-            .enumerate()
-            .map(|(index, weight)| {
-                let at = 30 + index - half;
-                weight * (channel[at + 1] - 2.0 * channel[at] + channel[at - 1]) / (period_s * period_s)
-            })
-            .sum();
-        let found = window.parabola(&channel, 30).curvature;
-        assert!((found / averaged - 1.0).abs() < 1e-12, "{found} {averaged}");
-    }
-
-    #[test]
-    fn a_parabola_is_found_exactly_up_to_the_ends() {
-        let time_s: Vec<f64> = (0..60).map(|row| f64::from(row) * 0.005).collect();
-        let channel: Vec<f64> = time_s.iter().map(|t| 3.0 - 2.0 * t + 5.0 * t * t).collect();
-        let window = Window::over(&time_s, HALF_WINDOW_S);
-        for at in [0, 3, 30, 59] {
-            let t = time_s[at];
-            let found = window.parabola(&channel, at);
-            assert!((found.value - channel[at]).abs() < 1e-12);
-            let t = t.clamp(time_s[LEAST_HALF], time_s[59 - LEAST_HALF]);
-            assert!((found.slope - (10.0 * t - 2.0)).abs() < 1e-9);
-            assert!((found.curvature - 10.0).abs() < 1e-7);
-        }
-    }
-
-    #[test]
-    fn an_average_of_a_step_never_turns_back() {
-        let time_s: Vec<f64> = (0..60).map(|row| f64::from(row) * 0.005).collect();
-        let channel: Vec<f64> = (0..60).map(|row| if row < 30 { 0.0 } else { 1.0 }).collect();
-        let average = Average::over(&time_s);
-        let path: Vec<f64> = (0..60).map(|at| average.at(&channel, at)).collect();
-        assert!(path.windows(2).all(|pair| pair[1] >= pair[0]));
-        assert_eq!((path[0], path[59]), (0.0, 1.0));
-    }
-
-    #[test]
-    fn noise_at_rest_is_no_way_back() {
-        let mut onward = Onward::new(0.3);
-        let path: Vec<f64> = [0.0, 1.0, 2.0, 1.9, 2.1, 1.85, 2.05, 1.5, 1.6, 1.0].map(|to| onward.follow(to)).into();
-        assert_eq!(path, [0.0, 1.0, 2.0, 2.0, 2.1, 2.1, 2.1, 1.5, 1.5, 1.0]);
-    }
-
-    #[test]
-    fn a_start_just_before_the_end_is_no_faster_than_it_is() {
-        let time_s: Vec<f64> = (0..60).map(|row| f64::from(row) * 0.005).collect();
-        let channel: Vec<f64> = (0..60).map(|row| f64::from(row - 55).max(0.0)).collect();
-        let window = Window::over(&time_s, HALF_WINDOW_S);
-        for at in 0..60 {
-            let slope = window.parabola(&channel, at).slope;
-            assert!((-1e-9..=200.0 + 1e-9).contains(&slope), "{at}: {slope}");
-        }
     }
 }

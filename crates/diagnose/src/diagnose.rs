@@ -6,7 +6,7 @@ use pam_core::artifact::diagnosis::{
     Verdict,
 };
 use pam_core::artifact::model::EffectEntry;
-use pam_core::effects::{AugmentedModel, Term};
+use pam_core::effects::AugmentedModel;
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
 use pam_identification::evaluate::evaluate;
@@ -146,14 +146,10 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let verdict = verdict(&found, &sizes, knocks.is_some());
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
 
-    let (mut effects, mut entries) = named(&setting, &found, &uncertainty);
+    let (effects, entries) = named(&setting, &found, &uncertainty, knocks.as_ref());
     let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
-    let mut terms = terms(state);
+    let mut terms = state.terms();
     if let Some(knocks) = &knocks {
-        let named = knocking(knocks);
-        entries.push(EffectEntry { id: named.id.clone(), parameters: named.parameters.clone() });
-        effects.push(named);
-        effects.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
         terms.push(knocks.term());
         regions.insert(if effects[0].id == knocks::ID { 0 } else { regions.len() }, knocks.region(sizes.mismatch_n));
     }
@@ -220,26 +216,6 @@ fn better_base(
     Ok(if rmse_n(&identified)? <= rmse_n(refitted)? { identified } else { refitted.clone() })
 }
 
-/// Effects with their values, as a model evaluates them.
-pub fn terms(state: &crate::state::State) -> Vec<Term> {
-    let mut at = 0;
-    state
-        .guesses
-        .iter()
-        .map(|guess| {
-            let n = guess.amplitudes().len();
-            let amplitudes = guess
-                .amplitudes()
-                .iter()
-                .zip(&state.fit.amplitudes[at..at + n])
-                .map(|(amplitude, value)| value.clamp(amplitude.range.0, amplitude.range.1))
-                .collect();
-            at += n;
-            Term { effect: guess.effect, shape: guess.shape.clone(), amplitudes }
-        })
-        .collect()
-}
-
 fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
     let improved = without.log_ratios(with).filter(|&ratio| ratio > 0.0).count();
     Evidence {
@@ -252,12 +228,16 @@ fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
     }
 }
 
-/// The effects that were taken, in order of evidence.
-fn named(setting: &Setting<'_>, found: &Found, uncertainty: &Uncertainty) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
+/// The effects that were taken and the mass behind `knocks`, in order of evidence, and in that in which a model has them.
+fn named(
+    setting: &Setting<'_>,
+    found: &Found,
+    uncertainty: &Uncertainty,
+    knocks: Option<&Knocks>,
+) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
     let state = &found.best.state;
     let correlated = correlated_instants(setting, &setting.residuals_n(state));
     let mut named = Vec::new();
-    let mut list = Vec::new();
     let mut first = 0;
     for (index, guess) in state.guesses.iter().enumerate() {
         let page = guess.effect.page();
@@ -273,7 +253,6 @@ fn named(setting: &Setting<'_>, found: &Found, uncertainty: &Uncertainty) -> (Ve
             || evidence(&found.base.held_out, &found.best.held_out, found.first.len()),
             |taken| evidence(&taken.without, &found.best.held_out, found.first.len()),
         );
-        list.push(EffectEntry { id: page.id.to_owned(), parameters: parameters.clone() });
         named.push(NamedEffect {
             id: page.id.to_owned(),
             name: page.name.to_owned(),
@@ -284,6 +263,9 @@ fn named(setting: &Setting<'_>, found: &Found, uncertainty: &Uncertainty) -> (Ve
             separating_test: separating_test.to_owned(),
         });
     }
+    named.extend(knocks.map(knocking));
+    let entry = |named: &NamedEffect| EffectEntry { id: named.id.clone(), parameters: named.parameters.clone() };
+    let list = named.iter().map(entry).collect();
     named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
     (named, list)
 }

@@ -177,25 +177,11 @@ fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess:
             })
             .collect();
     }
-    let mut terms = terms(state);
+    let mut terms = state.terms();
     let before_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms.clone()));
     terms.push(Term { effect: guess.effect, shape: guess.shape.clone(), amplitudes: Vec::new() });
     let after_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms));
     vec![tangent.left_of(|row| after_n[row] - before_n[row])]
-}
-
-/// Effects of `state` with the values that were fitted.
-fn terms(state: &State) -> Vec<Term> {
-    let mut amplitudes = state.fit.amplitudes.iter().copied();
-    state
-        .guesses
-        .iter()
-        .map(|guess| Term {
-            effect: guess.effect,
-            shape: guess.shape.clone(),
-            amplitudes: amplitudes.by_ref().take(guess.amplitudes().len()).collect(),
-        })
-        .collect()
 }
 
 /// Force of `model` at every instant.

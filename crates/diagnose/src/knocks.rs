@@ -13,7 +13,7 @@ use pam_core::artifact::diagnosis::{Coordinate, Region};
 use pam_core::artifact::model::ParameterEntry;
 use pam_core::direction::Thresholds;
 use pam_core::effects::{AugmentedModel, Effect, Mount, Term, effect};
-use pam_core::motion::acceleration_weights;
+use pam_core::smoothing::acceleration_weights;
 use pam_identification::error::IdentifyError;
 use pam_identification::predict::walk_augmented;
 use pam_identification::prepare::Prepared;
@@ -69,7 +69,7 @@ impl Knocks {
     /// Those in what `explained` leaves, where they matter and a mass may be named beside what it has.
     ///
     /// # Errors
-    /// See [`of`](Self::of).
+    /// [`IdentifyError::Samples`] where samples cannot be read back.
     pub fn that_matter(
         recordings: &[Prepared],
         explained: &AugmentedModel,
@@ -89,10 +89,7 @@ impl Knocks {
 
     /// Those in `recordings` that `model` leaves unexplained, where noise leaves `floor_n` of any model; none where there are
     /// none that a mass explains. `thresholds` are those of the direction, `rest_length_m` is that of the muscle.
-    ///
-    /// # Errors
-    /// [`IdentifyError::Samples`] where samples cannot be read back.
-    pub fn of(
+    fn of(
         recordings: &[Prepared],
         model: &AugmentedModel,
         thresholds: Thresholds,

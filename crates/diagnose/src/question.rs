@@ -7,7 +7,6 @@ use pam_identification::prepare::Prepared;
 use pam_identification::search_space::SearchSpace;
 
 use crate::base;
-use crate::diagnose::terms;
 use crate::error::DiagnoseError;
 use crate::knocks::Knocks;
 use crate::search::{Found, Limits, search};
@@ -91,7 +90,7 @@ impl<'a> Question<'a> {
 
     fn knocks(&self, found: &Found, sizes: &Sizes) -> Result<Option<Knocks>, DiagnoseError> {
         let state = &found.best.state;
-        let explained = AugmentedModel::new(state.model.clone(), terms(state));
+        let explained = AugmentedModel::new(state.model.clone(), state.terms());
         Ok(Knocks::that_matter(self.estimation, &explained, self.model, &self.limits, sizes)?)
     }
 }

@@ -6,7 +6,8 @@
 use pam_core::effects::Moment;
 use pam_core::effects::moment::SLIDE_M_PER_PA;
 use pam_core::force::ForceModel;
-use pam_core::motion::{HALF_WINDOW_S, Instant};
+use pam_core::motion::Instant;
+use pam_core::smoothing::HALF_WINDOW_S;
 
 use crate::protocols::{Reach, Take};
 use crate::track::Track;
@@ -286,8 +287,8 @@ pub(crate) mod tests {
             weights.extend(effects.iter().flat_map(|(_, _, amplitudes)| amplitudes.iter()));
             let sheet =
                 Ground { track: &given.track, columns: &given.columns, only: None }.sheet(&guesses, &given.model);
-            for (instant, row) in given.track.instants.iter_mut().zip(sheet.columns.chunks_exact(sheet.width)) {
-                instant.force_n = row.iter().zip(&weights).map(|(column, weight)| column * weight).sum();
+            for (at, instant) in given.track.instants.iter_mut().enumerate() {
+                instant.force_n = sheet.force_n(at, &weights);
                 instant.moment.force_n = instant.force_n;
             }
             given

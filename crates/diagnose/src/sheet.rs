@@ -22,6 +22,14 @@ pub struct Sheet {
     pub width: usize,
 }
 
+impl Sheet {
+    /// Force at instant `at` that `weights` of the columns make, in N.
+    pub fn force_n(&self, at: usize, weights: &[f64]) -> f64 {
+        let row = &self.columns[at * self.width..(at + 1) * self.width];
+        row.iter().zip(weights).map(|(column, weight)| column * weight).sum()
+    }
+}
+
 /// What does not change during a diagnosis.
 #[derive(Debug)]
 pub struct Ground<'a> {

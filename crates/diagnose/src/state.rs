@@ -1,6 +1,6 @@
 //! A hypothesis fitted to the track.
 
-use pam_core::effects::{Memory, Role};
+use pam_core::effects::{Memory, Role, Term};
 use pam_core::force::ForceModel;
 use pam_core::force::columns::ForceColumns;
 use pam_core::muscle::Muscle;
@@ -53,6 +53,24 @@ pub struct State {
     pub read: Read,
 }
 
+impl State {
+    /// The effects with their values, as a model evaluates them.
+    pub fn terms(&self) -> Vec<Term> {
+        let mut values = self.fit.amplitudes.iter();
+        let term = |guess: &Guess| Term {
+            effect: guess.effect,
+            shape: guess.shape.clone(),
+            amplitudes: guess
+                .amplitudes()
+                .iter()
+                .zip(values.by_ref())
+                .map(|(amplitude, value)| value.clamp(amplitude.range.0, amplitude.range.1))
+                .collect(),
+        };
+        self.guesses.iter().map(term).collect()
+    }
+}
+
 /// What the load cell reads of a force `F` at every instant: `slope F + offset_n`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Read {
@@ -83,10 +101,11 @@ impl Read {
     /// changes by more than a little.
     fn move_to(&mut self, memory: &mut dyn Memory, sheet: &Sheet, weights: &[f64], counted: &[bool]) -> usize {
         let mut moved = 0;
-        for (at, row) in sheet.columns.chunks_exact(sheet.width).enumerate().filter(|(at, _)| counted[*at]) {
-            let force_n: f64 = row.iter().zip(weights).map(|(column, weight)| column * weight).sum();
+        for at in (0..counted.len()).filter(|&at| counted[at]) {
+            let force_n = sheet.force_n(at, weights);
+            let slope = memory.slope(force_n);
             // What hardly shows is nothing: rows next to zero are none that a decomposition can be made of.
-            let slope = Some(memory.slope(force_n)).filter(|slope| *slope > LEAST_SLOPE).unwrap_or(0.0);
+            let slope = if slope > LEAST_SLOPE { slope } else { 0.0 };
             moved += usize::from((slope - self.slopes[at]).abs() > SLOPE_MOVED);
             self.slopes[at] = slope;
             self.offsets_n[at] = memory.reads(force_n) - slope * force_n;
@@ -96,12 +115,16 @@ impl Read {
 
     /// Columns and forces of which the cell reads that much.
     fn linear(&self, sheet: &Sheet, force_n: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut columns = sheet.columns.clone();
-        for (row, slope) in columns.chunks_exact_mut(sheet.width).zip(&self.slopes).filter(|(_, slope)| **slope != 1.0)
-        {
+        let measured = force_n.iter().zip(&self.offsets_n).map(|(force_n, offset_n)| force_n - offset_n).collect();
+        (self.scaled(sheet.columns.clone(), sheet.width), measured)
+    }
+
+    /// As much of `rows`, `width` columns each, as the cell reads.
+    fn scaled(&self, mut rows: Vec<f64>, width: usize) -> Vec<f64> {
+        for (row, slope) in rows.chunks_exact_mut(width.max(1)).zip(&self.slopes).filter(|(_, slope)| **slope != 1.0) {
             row.iter_mut().for_each(|column| *column *= slope);
         }
-        (columns, force_n.iter().zip(&self.offsets_n).map(|(force_n, offset_n)| force_n - offset_n).collect())
+        rows
     }
 }
 
@@ -162,21 +185,18 @@ impl<'a> Setting<'a> {
             (Some(memory), None) => Read::near_floor(&mut **memory, &force_n),
         };
         let mut start = near.to_vec();
-        for round in 0..=READ_ROUNDS {
+        let mut rounds_left = READ_ROUNDS;
+        loop {
             let normal = {
-                let (columns, forces);
-                let (rows, measured) = if reads.is_none() {
-                    (&sheet.columns, &force_n)
-                } else {
-                    (columns, forces) = read.linear(&sheet, &force_n);
-                    (&columns, &forces)
-                };
+                let linear = reads.is_some().then(|| read.linear(&sheet, &force_n));
+                let (rows, measured) =
+                    linear.as_ref().map_or((&sheet.columns, &force_n), |(rows, forces)| (rows, forces));
                 Normal::new(self.track, rows, sheet.width, measured, self.counted(), reference.clone())
             };
             let fit = self.joint(&limits).fit_all(&normal.extend(self.track, &[], 0), &start)?;
             // The last readings have not settled: this fit is under them.
             let settled = match &mut reads {
-                Some(memory) if round < READ_ROUNDS => {
+                Some(memory) if rounds_left > 0 => {
                     read.move_to(&mut **memory, &sheet, &fit.weights, self.counted()) * 2000 <= self.track.n()
                 }
                 _ => true,
@@ -187,8 +207,8 @@ impl<'a> Setting<'a> {
             }
             start.clone_from(&fit.x);
             reference.clone_from(&fit.weights);
+            rounds_left -= 1;
         }
-        None
     }
 
     /// Fits of `state` that each leave one fold out.
@@ -221,12 +241,8 @@ impl<'a> Setting<'a> {
 
     /// Columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes.
     fn more(&self, state: &State, guess: &Guess) -> (Vec<f64>, Vec<(f64, f64)>) {
-        let mut rows = self.ground().more_columns(&state.sheet, guess, &state.model);
-        let k = guess.amplitudes().len();
-        for (row, slope) in rows.chunks_exact_mut(k.max(1)).zip(&state.read.slopes).filter(|(_, slope)| **slope != 1.0)
-        {
-            row.iter_mut().for_each(|column| *column *= slope);
-        }
+        let rows = self.ground().more_columns(&state.sheet, guess, &state.model);
+        let rows = state.read.scaled(rows, guess.amplitudes().len());
         let mut limits = ranges(&state.guesses);
         limits.extend(guess.amplitudes().iter().map(|amplitude| amplitude.range));
         (rows, limits)
@@ -234,14 +250,13 @@ impl<'a> Setting<'a> {
 
     /// Residual of every instant, measured less modelled, in N.
     pub fn residuals_n(&self, state: &State) -> Vec<f64> {
-        let (width, read) = (state.sheet.width, &state.read);
+        let read = &state.read;
         self.track
             .instants
             .iter()
             .enumerate()
             .map(|(at, instant)| {
-                let row = &state.sheet.columns[at * width..(at + 1) * width];
-                let model_n: f64 = row.iter().zip(&state.fit.weights).map(|(column, weight)| column * weight).sum();
+                let model_n = state.sheet.force_n(at, &state.fit.weights);
                 instant.force_n - read.slopes[at] * model_n - read.offsets_n[at]
             })
             .collect()

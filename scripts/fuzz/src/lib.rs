@@ -1,4 +1,4 @@
-//! What the fuzz targets share: a file for the input, a mutator that knows JSON, and inputs that are in order.
+//! What the fuzz targets share: a file for the input, a mutator that knows JSON, inputs that are in order, and a short fit.
 
 pub mod json;
 
@@ -7,8 +7,12 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use pam_core::artifact::ModelArtifact;
+use pam_core::artifact::model::Loss;
+use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
 use pam_core::recording::{ReadOptions, Recording, read_recording};
+use pam_identification::fit::FitOptions;
+use pam_identification::identify::{Request, check};
 
 /// Gives `bytes` to `take` as a file, as every reader wants one. The file is the same one each time.
 pub fn with_file<T>(bytes: &[u8], take: impl FnOnce(&Path) -> T) -> T {
@@ -55,4 +59,26 @@ pub fn short_recording() -> Recording {
         text
     });
     with_file(text.as_bytes(), |path| read_recording(path, &ReadOptions::default())).expect("a recording in order")
+}
+
+/// Identifies `muscle` from `recording`, with as little search as there can be.
+pub fn fit_shortly(muscle: MuscleFile, recording: Recording, accept_implausible: bool) {
+    let request = Request {
+        estimation: vec![recording],
+        validation: Vec::new(),
+        muscle,
+        form: Form::Corrected,
+        options: FitOptions { n_particles: 4, n_iterations: 2, n_starts: 1, seed: 1, polish: true },
+        loss: Loss::Square,
+        free: Vec::new(),
+        fix: Vec::new(),
+        bladder_ratio: 0.89,
+        length_play_m: None,
+        pressure_play_pa: None,
+        accept_implausible,
+        unbounded: true,
+    };
+    if let Ok(checked) = check(request) {
+        let _ = checked.identify();
+    }
 }

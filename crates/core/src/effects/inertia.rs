@@ -102,7 +102,7 @@ static PAGE: Page = Page {
         Symbol {
             symbol: "f",
             unit: "Hz",
-            meaning: "natural frequency of the critically damped mount: 15 to 60 Hz for a clamp; rigid at 200 Hz",
+            meaning: "natural frequency of the critically damped mount; rigid at 200 Hz",
         },
     ],
     validity: "One resonance, well damped. With the cell at the fixed end some 30 g are all there is.",

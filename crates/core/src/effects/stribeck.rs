@@ -12,7 +12,8 @@ use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
-/// Travel over which contacts are renewed, in m (Rabinowicz 1951: 10 to 100 µm).
+/// Travel over which contacts are renewed, in m: an assumption. It lets friction remember the speed that it came from (the
+/// frictional memory of Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994), so that a stop does not push.
 const RENEWAL_M: f64 = 1e-4;
 
 /// The effect.
@@ -89,7 +90,7 @@ static PAGE: Page = Page {
     ],
     validity: "Motion that is long against the pre-sliding distance; the age of a contact at rest is left out.",
     source: "Tondu and Lopez (2000), IEEE Control Systems 20(2), for threads on threads; Armstrong-Hélouvry, Dupont and \
-             Canudas de Wit (1994), Automatica 30(7)",
+             Canudas de Wit (1994), Automatica 30(7), for friction with a memory, whose travel δ is an assumption",
     signature: "The residual is odd in the direction and sits at low speed: half the width of an isobaric loop falls \
                 with the logarithm of the speed. At one constant rate it is only more friction and leaves nothing.",
     confused_with: &[

@@ -2,17 +2,12 @@
 
 #![no_main]
 
-use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
+use libfuzzer_sys::{fuzz_mutator, fuzz_target};
 use pam_core::artifact::InverseArtifact;
 use pam_fuzz::{json, with_file};
 use pam_inverse_model::InverseNetwork;
 
-fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
-    match seed % 4 {
-        0 => fuzzer_mutate(data, size, max_size),
-        _ => json::mutate(data, size, max_size, seed).unwrap_or_else(|| fuzzer_mutate(data, size, max_size)),
-    }
-});
+fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| { json::mutate(data, size, max_size, seed) });
 
 fuzz_target!(|data: &[u8]| {
     let read = with_file(data, InverseArtifact::read).map_err(|error| error.to_string());

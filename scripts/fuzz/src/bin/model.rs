@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
+use libfuzzer_sys::{fuzz_mutator, fuzz_target};
 use pam_core::artifact::ModelArtifact;
 use pam_exo::uncertainty::Uncertainty;
 use pam_fuzz::{json, short_recording, with_file};
@@ -11,12 +11,7 @@ use pam_identification::predict::{augmented_forces_n, outside, prepare};
 use pam_inverse_model::ExactInverse;
 use pam_inverse_model::domain::InverseBox;
 
-fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
-    match seed % 4 {
-        0 => fuzzer_mutate(data, size, max_size),
-        _ => json::mutate(data, size, max_size, seed).unwrap_or_else(|| fuzzer_mutate(data, size, max_size)),
-    }
-});
+fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| { json::mutate(data, size, max_size, seed) });
 
 fuzz_target!(|data: &[u8]| {
     let read = with_file(data, ModelArtifact::read).map_err(|error| error.to_string());

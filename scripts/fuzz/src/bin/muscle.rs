@@ -3,12 +3,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use pam_core::artifact::model::Loss;
-use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
-use pam_fuzz::{short_recording, with_file};
-use pam_identification::fit::FitOptions;
-use pam_identification::identify::{Request, check};
+use pam_fuzz::{fit_shortly, short_recording, with_file};
 use pam_virtual_bench::Bench;
 use pam_virtual_bench::parameters::Parameters;
 use pam_virtual_bench::protocol::{Options, command};
@@ -26,22 +22,5 @@ fuzz_target!(|data: &[u8]| {
     if data.len() % 8 != 0 && !file.fit.is_empty() {
         return; // Freed dimensions take fifty times as long to fit as the other parameters.
     }
-    let request = Request {
-        estimation: vec![short_recording()],
-        validation: Vec::new(),
-        muscle: file,
-        form: Form::Corrected,
-        options: FitOptions { n_particles: 4, n_iterations: 2, n_starts: 1, seed: 1, polish: true },
-        loss: Loss::Square,
-        free: Vec::new(),
-        fix: Vec::new(),
-        bladder_ratio: 0.89,
-        length_play_m: None,
-        pressure_play_pa: None,
-        accept_implausible: true,
-        unbounded: true,
-    };
-    if let Ok(checked) = check(request) {
-        let _ = checked.identify();
-    }
+    fit_shortly(file, short_recording(), true);
 });

@@ -5,13 +5,9 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use pam_core::artifact::model::Loss;
-use pam_core::force::Form;
 use pam_core::quality::RecordingQuality;
-use pam_core::recording::{ReadOptions, Recording, read_recording};
-use pam_fuzz::{nominal_model, nominal_muscle, with_file};
-use pam_identification::fit::FitOptions;
-use pam_identification::identify::{Request, check};
+use pam_core::recording::{ReadOptions, read_recording};
+use pam_fuzz::{fit_shortly, nominal_model, nominal_muscle, with_file};
 use pam_identification::predict::{augmented_forces_n, outside, prepare};
 
 fn options(choice: u8) -> ReadOptions {
@@ -37,27 +33,6 @@ fn options(choice: u8) -> ReadOptions {
     options
 }
 
-fn fit(recording: Recording, accept_implausible: bool) {
-    let request = Request {
-        estimation: vec![recording],
-        validation: Vec::new(),
-        muscle: nominal_muscle(),
-        form: Form::Corrected,
-        options: FitOptions { n_particles: 4, n_iterations: 2, n_starts: 1, seed: 1, polish: true },
-        loss: Loss::Square,
-        free: Vec::new(),
-        fix: Vec::new(),
-        bladder_ratio: 0.89,
-        length_play_m: None,
-        pressure_play_pa: None,
-        accept_implausible,
-        unbounded: true,
-    };
-    if let Ok(checked) = check(request) {
-        let _ = checked.identify();
-    }
-}
-
 fuzz_target!(|data: &[u8]| {
     let Some((&choice, bytes)) = data.split_first() else { return };
     let read = || with_file(bytes, |path| read_recording(path, &options(choice)));
@@ -75,6 +50,6 @@ fuzz_target!(|data: &[u8]| {
     if bytes.len() % 16 == 0
         && let Ok(recording) = read()
     {
-        fit(recording, choice & 128 != 0);
+        fit_shortly(nominal_muscle(), recording, choice & 128 != 0);
     }
 });
