@@ -21,7 +21,9 @@ const STEPS_PER_ROW: usize = 10;
 pub(crate) struct Knees {
     /// The path, straight through where it has a knee.
     pub(crate) rest: Vec<f64>,
-    /// Rate that the knees so far have added at every row, per second.
+    /// What the knees so far have added at every row: the path is this and the rest.
+    pub(crate) added: Vec<f64>,
+    /// Rate that they have added, averaged over the step before every row, per second.
     pub(crate) rates: Vec<f64>,
     /// Second derivative by the knees over the step before every row, per second squared.
     pub(crate) bends: Vec<f64>,
@@ -39,7 +41,7 @@ impl Knees {
     /// what is left, what stands too close to another and is seen in the second.
     pub(crate) fn of(path: &[f64], windows: [&Window; 2], noise: f64) -> Self {
         let n = path.len();
-        let mut knees = Self { rest: path.to_vec(), rates: vec![0.0; n], bends: vec![0.0; n] };
+        let mut knees = Self { rest: path.to_vec(), added: vec![0.0; n], rates: vec![0.0; n], bends: vec![0.0; n] };
         for window in windows {
             knees.take(&found(&knees.rest, window, noise), window.period_s);
         }
@@ -50,15 +52,18 @@ impl Knees {
     fn take(&mut self, found: &[Knee], period_s: f64) {
         let last = self.rest.len().saturating_sub(1);
         let mut ahead = found.iter().peekable();
-        // The line that the knees so far have added.
-        let (mut slope, mut height) = (0.0, 0.0);
-        for (row, (rest, rate)) in self.rest.iter_mut().zip(&mut self.rates).enumerate() {
+        // The line that the knees so far have added, and where it has come to.
+        let (mut slope, mut height, mut before) = (0.0, 0.0, 0.0);
+        for row in 0..self.rest.len() {
             while let Some(knee) = ahead.next_if(|knee| knee.at <= row as f64) {
                 slope += knee.change;
                 height -= knee.change * knee.at;
             }
-            *rest -= slope * row as f64 + height;
-            *rate += slope / period_s;
+            let here = slope * row as f64 + height;
+            self.rest[row] -= here;
+            self.added[row] += here;
+            self.rates[row] += (here - before) / period_s;
+            before = here;
         }
         for knee in found {
             // Shared by two steps so that it acts, on average, when it does.

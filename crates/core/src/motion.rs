@@ -83,7 +83,7 @@ pub fn walk(
             });
             let length = match &knees {
                 None => length,
-                Some(Knees { rest, rates, bends }) => Parabola {
+                Some(Knees { rest, rates, bends, .. }) => Parabola {
                     value: length.value,
                     slope: window.parabola(rest, at).slope + rates[at],
                     curvature: near.parabola(rest, at).curvature + bends[at],
@@ -98,7 +98,12 @@ pub fn walk(
                 by_pressure_m += SLIDE_M_PER_PA * pressure_step_pa;
             }
             last = Some((rows.time_s[at], average_pa));
-            let shortened_m = rest_length_m - average.at(&rows.length_m, at);
+            let average_m = match &knees {
+                None => average.at(&rows.length_m, at),
+                // A move that has ended does not go on for the rows that it is averaged over.
+                Some(knees) => average.at(&knees.rest, at) + knees.added[at],
+            };
+            let shortened_m = rest_length_m - average_m;
             let contraction_m = contraction.follow(shortened_m);
             let slide_m = slide.follow(shortened_m + by_pressure_m);
             let choose = |smooth_value: f64, recorded_value: f64| if recorded { recorded_value } else { smooth_value };

@@ -77,7 +77,9 @@ impl<'a> Question<'a> {
         let track = track.without(&first);
         let mut limits = self.limits.clone();
         limits.excluded.push(knocks::ID.to_owned());
-        let (found, sizes) = self.search(&track, &limits, looked)?;
+        let first_look = found.first;
+        let (mut found, sizes) = self.search(&track, &limits, looked)?;
+        found.first = first_look;
         let knocks = self.knocks(&found, &sizes, Residual::Explained)?.unwrap_or(first);
         let sizes = sizes.with(&knocks);
         Ok(Answer { track, found, knocks: Some(knocks), sizes })
