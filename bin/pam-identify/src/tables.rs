@@ -112,7 +112,7 @@ fn status(status: ParameterStatus) -> &'static str {
 
 /// How well the model agrees with every recording.
 pub(crate) fn agreement(artifact: &ModelArtifact) -> String {
-    let mut table = Table::new(["recording", "RMSE N", "all N", "max N", "R²", "fit %", "samples", "reversals"]);
+    let mut table = Table::new(["recording", "RMSE N", "all N", "max N", "R²", "fit %", "samples", "left out"]);
     let mut row = |name: String, statistics: &pam_core::artifact::model::FitStatistics| {
         table.row([
             name,
@@ -133,8 +133,8 @@ pub(crate) fn agreement(artifact: &ModelArtifact) -> String {
         row("validation, all".to_owned(), validation);
     }
     format!(
-        "Agreement (sensor noise alone would leave {} N; the samples are worth {} independent ones; around reversals, \
-         where noise hides the direction of friction, samples count in \"all\" only)\n{}",
+        "Agreement (sensor noise alone would leave {} N; the samples are worth {} independent ones; samples \
+         around reversals, where noise hides the direction of friction, and beyond a sensor's range count in \"all\" only)\n{}",
         significant(artifact.fit.noise_floor_n, 3),
         significant(artifact.fit.effective_samples, 3),
         table.to_terminal()

@@ -59,7 +59,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     )?;
     let statistics = evaluation.each[0];
     console.note(format!(
-        "RMSE {:.3} N, largest {:.1} N, fit {:.2} % over {} samples ({} at reversals left out)",
+        "RMSE {:.3} N, largest {:.1} N, fit {:.2} % over {} samples ({} at reversals or beyond a sensor's range left out)",
         statistics.rmse_n, statistics.max_n, statistics.fit_percent, statistics.n_samples, statistics.n_unsettled
     ));
     if let Some(limit) = args.max_rmse_n.filter(|&limit| statistics.rmse_n > limit) {

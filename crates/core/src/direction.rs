@@ -7,7 +7,7 @@
 //!
 //! In a recording the future is known, so a flip is dated back to where the motion turned. How exactly that
 //! is known depends on the noise: around it the direction is *unsettled*, and a fit does not count those
-//! samples.
+//! samples, as little as those of a sensor that is out of its range.
 //!
 //! # Design
 //! The play acts on a centered moving average, because the range that white noise covers grows without end:
@@ -79,12 +79,22 @@ impl Direction {
         f64::from(self.marks[row].signum())
     }
 
-    /// Whether the direction of a row is certain.
+    /// Whether the direction of a row is certain and the row was not left out.
     pub fn is_settled(&self, row: usize) -> bool {
         self.marks[row].abs() < 2
     }
 
-    /// Rows whose direction is not certain.
+    /// Leaves `rows` out, whose directions stay what they are.
+    ///
+    /// # Panics
+    /// Where there are not that many rows.
+    pub fn leave_out(&mut self, rows: std::ops::Range<usize>) {
+        for mark in &mut self.marks[rows] {
+            *mark = 2 * mark.signum();
+        }
+    }
+
+    /// Rows whose direction is not certain or that were left out.
     pub fn n_unsettled(&self) -> usize {
         self.marks.iter().filter(|mark| mark.abs() == 2).count()
     }

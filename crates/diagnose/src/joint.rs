@@ -1,9 +1,9 @@
 //! Base and effects fitted together, within what physics allows, and judged on blocks that the fit never saw.
 
-use pam_core::force::BaseParameters;
+use pam_core::force::{BaseParameters, Parameter};
 use pam_core::force::columns::ForceColumns;
 use pam_identification::problem::ForceProblem;
-use pam_identification::search_space::SearchSpace;
+use pam_identification::search_space::{Free, SearchSpace};
 use pam_optim::polish::descend;
 use rayon::prelude::*;
 
@@ -80,7 +80,13 @@ impl Joint<'_> {
             let at_zero = -low / (high - low);
             x.push(start.get(n_free + index).copied().unwrap_or(at_zero));
         }
-        let polished = descend(&problem, &x);
+        let mut polished = descend(&problem, &x);
+        if let Some(other) = self.elsewhere(&x, &polished.x) {
+            let second = descend(&problem, &other);
+            if second.cost < polished.cost {
+                polished = second;
+            }
+        }
         let weights = problem.weights(&polished.x);
         Some(JointFit {
             parameters: self.space.parameters(&polished.x[..n_free]),
@@ -89,6 +95,20 @@ impl Joint<'_> {
             at_bound: polished.at_bound,
             weights,
             x: polished.x,
+        })
+    }
+
+    /// Another start than `start`, if the descent from there to `end` found nothing of an effect: eq. 11 is not linear in
+    /// k₂, and one that has grown to stand in for an effect keeps the descent from finding it.
+    fn elsewhere(&self, start: &[f64], end: &[f64]) -> Option<Vec<f64>> {
+        let n_free = self.space.free.len();
+        let none_of_it = self.ranges.iter().zip(&end[n_free..]).any(|(&(low, _), &x)| low == 0.0 && x <= 0.0);
+        let k2 = self.space.free.iter().position(|free| *free == Free::One(Parameter::K2))?;
+        let nominal = self.space.nominal_coordinate(k2, 0.0);
+        none_of_it.then(|| {
+            let mut other = start.to_vec();
+            other[k2] = nominal;
+            other
         })
     }
 

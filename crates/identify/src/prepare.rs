@@ -64,7 +64,7 @@ pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
     }
 }
 
-/// Finds the direction of motion of every recording, in parallel.
+/// Finds the direction of motion of every recording, in parallel, and leaves out what lies beyond a sensor's range.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
@@ -72,9 +72,16 @@ pub fn direct(gates: Vec<Gated>, thresholds: Thresholds, form: Form) -> Result<V
     let driver = if form == Form::AsPrinted { Driver::Pressure } else { Driver::Motion };
     gates
         .into_par_iter()
-        .map(|Gated { recording, quality }| match Direction::of(&recording, thresholds, driver) {
-            Ok(direction) => Ok(Prepared { recording, quality, direction }),
-            Err(reason) => Err(IdentifyError::Samples { path: recording.path, reason }),
+        .map(|Gated { recording, quality }| {
+            let direction = || {
+                let mut direction = Direction::of(&recording, thresholds, driver)?;
+                quality.out_of_range(&recording)?.into_iter().for_each(|rows| direction.leave_out(rows));
+                Ok(direction)
+            };
+            match direction() {
+                Ok(direction) => Ok(Prepared { recording, quality, direction }),
+                Err(reason) => Err(IdentifyError::Samples { path: recording.path, reason }),
+            }
         })
         .collect()
 }

@@ -160,23 +160,26 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
     let prepared = || found.estimation.iter().chain(&found.validation);
     for (name, unit) in [("pressure", "Pa"), ("length", "m"), ("force", "N")] {
         for end in ["low", "high"] {
-            let stuck: Vec<(&str, f64, f64)> = prepared()
+            let stuck: Vec<(&str, f64, f64, bool)> = prepared()
                 .filter_map(|prepared| {
                     let channel = prepared.quality.channel(name)?;
-                    let (share, value) = if end == "low" {
-                        (channel.clipped_low_share, channel.lowest)
+                    let (share, value, beyond) = if end == "low" {
+                        (channel.clipped_low_share, channel.lowest, channel.ends_low())
                     } else {
-                        (channel.clipped_high_share, channel.highest)
+                        (channel.clipped_high_share, channel.highest, channel.ends_high())
                     };
-                    (share > 0.005).then_some((prepared.recording.path.as_str(), share, value))
+                    (share > 0.005).then_some((prepared.recording.path.as_str(), share, value, beyond))
                 })
                 .collect();
-            if let Some((path, share, value)) = stuck.iter().copied().max_by(|left, right| left.1.total_cmp(&right.1)) {
+            if let Some((path, share, value, beyond)) =
+                stuck.iter().copied().max_by(|left, right| left.1.total_cmp(&right.1))
+            {
                 warnings.push(format!(
                     "{path}{}: {name} is stuck at its {end} end ({value:.4} {unit}) in up to {:.1} % of the samples: the \
-                     sensor or its converter is out of range there",
+                     sensor or its converter is out of range there{}",
                     and_others(stuck.len() - 1),
-                    100.0 * share
+                    100.0 * share,
+                    if beyond { ", and those samples are not counted" } else { "" }
                 ));
             }
         }
@@ -190,7 +193,7 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
         .collect();
     if let Some((path, share)) = doubtful.iter().copied().max_by(|left, right| left.1.total_cmp(&right.1)) {
         warnings.push(format!(
-            "{path}{}: up to {:.0} % of the samples lie around reversals and are not counted; where a gauge rings at every \
+            "{path}{}: up to {:.0} % of the samples lie around reversals or beyond a sensor's range and are not counted; where a gauge rings at every \
              pulse of the valve, raise --pressure-play-kpa above the ringing",
             and_others(doubtful.len() - 1),
             100.0 * share

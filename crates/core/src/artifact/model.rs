@@ -195,7 +195,7 @@ pub struct RecordingFit {
 pub struct FitStatistics {
     /// Root mean square, in N.
     pub rmse_n: f64,
-    /// Root mean square with the samples around reversals, in N.
+    /// Root mean square with the samples that are left out, in N.
     pub rmse_all_n: f64,
     /// Largest absolute value, in N.
     pub max_n: f64,
@@ -205,7 +205,7 @@ pub struct FitStatistics {
     pub fit_percent: f64,
     /// Samples counted.
     pub n_samples: usize,
-    /// Samples around reversals, which are left out because noise hides the direction there.
+    /// Samples that are left out: around reversals, where noise hides the direction, and beyond a sensor's range.
     pub n_unsettled: usize,
 }
 
