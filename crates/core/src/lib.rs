@@ -8,6 +8,7 @@ pub mod artifact;
 pub mod direction;
 pub mod effects;
 pub mod force;
+mod knees;
 pub mod motion;
 pub mod muscle;
 pub mod quality;

@@ -8,11 +8,14 @@ use std::io;
 use crate::direction::{Direction, Thresholds};
 use crate::effects::Moment;
 use crate::effects::moment::SLIDE_M_PER_PA;
+use crate::knees::Knees;
 use crate::recording::Recording;
 use crate::smoothing::{Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Parabola, Window};
 
-/// Six deviations of the noise, from peak to peak, over a threshold of the direction, which is five.
-const NOISE_PER_THRESHOLD: f64 = 1.2;
+/// Deviations of the noise in a threshold of the direction.
+const DEVIATIONS_PER_THRESHOLD: f64 = 5.0;
+/// Six deviations of the noise, from peak to peak, over a threshold of the direction.
+const NOISE_PER_THRESHOLD: f64 = 6.0 / DEVIATIONS_PER_THRESHOLD;
 
 /// One row of a recording with everything that effects need.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +26,8 @@ pub struct Instant {
     pub moment: Moment,
     /// Force, in N; as recorded or smooth like the other channels.
     pub force_n: f64,
+    /// Whether the speed changes at once just before it; never where channels are smooth.
+    pub knee: bool,
     /// Whether the direction is certain, all through the window where channels are smooth.
     pub settled: bool,
 }
@@ -61,6 +66,10 @@ pub fn walk(
         let near = Window::over(&rows.time_s, HALF_VALUE_WINDOW_S);
         let average = Average::over(&rows.time_s);
         let still = Still::of(&rows, &window, thresholds.length_m);
+        // Smooth forces are to be compared with equally smooth rates.
+        let recorded = channels == Channels::Recorded;
+        let knees = recorded
+            .then(|| Knees::of(&rows.length_m, [&window, &near], thresholds.length_m / DEVIATIONS_PER_THRESHOLD));
         let mut last: Option<(f64, f64)> = None;
         let noise = average.share_of_noise() * NOISE_PER_THRESHOLD;
         let mut contraction = Onward::new(noise * thresholds.length_m);
@@ -72,6 +81,14 @@ pub fn walk(
                 let Parabola { value, curvature, .. } = near.parabola(channel, at);
                 Parabola { value, curvature, ..window.parabola(channel, at) }
             });
+            let length = match &knees {
+                None => length,
+                Some(Knees { rest, rates, bends }) => Parabola {
+                    value: length.value,
+                    slope: window.parabola(rest, at).slope + rates[at],
+                    curvature: near.parabola(rest, at).curvature + bends[at],
+                },
+            };
             let row = segment.start + at;
             let average_pa = average.at(&rows.pressure_pa, at);
             let (step_s, pressure_step_pa) =
@@ -84,8 +101,7 @@ pub fn walk(
             let shortened_m = rest_length_m - average.at(&rows.length_m, at);
             let contraction_m = contraction.follow(shortened_m);
             let slide_m = slide.follow(shortened_m + by_pressure_m);
-            let smooth = channels == Channels::Smooth;
-            let choose = |smooth_value: f64, recorded: f64| if smooth { smooth_value } else { recorded };
+            let choose = |smooth_value: f64, recorded_value: f64| if recorded { recorded_value } else { smooth_value };
             let force_n = choose(force.value, rows.force_n.get(at).copied().unwrap_or(0.0));
             visit(Instant {
                 row,
@@ -106,7 +122,8 @@ pub fn walk(
                     force_n: force.value,
                 },
                 force_n,
-                settled: if smooth {
+                knee: knees.as_ref().is_some_and(|knees| knees.bends[at] != 0.0),
+                settled: if !recorded {
                     let (from, to) = (at.saturating_sub(near.half), (at + near.half).min(rows.time_s.len() - 1));
                     direction.is_settled(segment.start + from)
                         && direction.is_settled(row)

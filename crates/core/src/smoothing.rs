@@ -46,6 +46,12 @@ impl Window {
         Self { half, period_s, n_rows, sum2, sum4 }
     }
 
+    /// Deviation of a curvature over that of the white noise of the rows, per second squared.
+    pub(crate) fn curvature_noise(&self) -> f64 {
+        let n = (2 * self.half + 1) as f64;
+        2.0 * (n / (n * self.sum4 - self.sum2 * self.sum2)).sqrt() / (self.period_s * self.period_s)
+    }
+
     /// The parabola at row `at`; near the ends that of the nearest whole window, carried on.
     pub(crate) fn parabola(&self, channel: &[f64], at: usize) -> Parabola {
         if channel.is_empty() {

@@ -259,6 +259,7 @@ impl Path {
                         force_n: 0.0,
                     },
                     force_n: base.force_n(pressure_pa, length_m, direction),
+                    knee: false,
                     settled: true,
                 }
             })

@@ -2,8 +2,8 @@
 //!
 //! They last some tens of milliseconds, much of that where the direction is not settled: the grid of a [`crate::track`]
 //! smooths them over or does not count them. So they are looked for in the samples as recorded, in what the model leaves
-//! there. Around each knock, the residual is cleared of a level, a slope and what goes with the speed (friction, damping,
-//! delays); what remains must be one mass times the acceleration behind one mount ([`pam_core::effects::Mount`]), the same in
+//! there. Around each knock, the residual is cleared of a level, a slope and, until something explains that, what goes with
+//! the speed (friction, damping, delays); what remains must be one mass times the acceleration behind one mount ([`pam_core::effects::Mount`]), the same in
 //! all knocks.
 
 use std::ops::Range;
@@ -47,6 +47,26 @@ const ROUNDS: usize = 3;
 /// Frequencies of the mount that are tried first, in Hz.
 const MOUNTS_HZ: [f64; 8] = [12.0, 16.0, 20.0, 25.0, 30.0, 40.0, 60.0, 120.0];
 
+/// What the residual around knocks may still hold beside them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Residual {
+    /// Friction, damping or a delay that nobody has looked for yet: what goes with the speed is cleared away. A mass is found
+    /// beside it, and its size less well: the speed takes up what the mount has of another shape.
+    WithSpeed,
+    /// All of that has been looked for without the knocks.
+    Explained,
+}
+
+impl Residual {
+    /// How many of level, slope and speed are cleared away.
+    fn n_cleared(self) -> usize {
+        match self {
+            Self::WithSpeed => 3,
+            Self::Explained => 2,
+        }
+    }
+}
+
 /// A mass that knocks.
 #[derive(Debug, Clone)]
 pub struct Knocks {
@@ -76,26 +96,31 @@ impl Knocks {
         model: &ModelArtifact,
         limits: &Limits,
         sizes: &Sizes,
+        residual: Residual,
     ) -> Result<Option<Self>, IdentifyError> {
         let known = explained.terms().iter().any(|term| term.effect.page().id == ID);
         if known || explained.terms().len() >= limits.max_effects || limits.excluded.iter().any(|id| id == ID) {
             return Ok(None);
         }
-        let knocks = Self::of(recordings, explained, model.direction, model.geometry.rest_length_m, sizes.floor_n)?;
+        let knocks = Self::all(recordings, explained, model.direction, model.geometry.rest_length_m)?;
+        if knocks.len() < LEAST_KNOCKS {
+            return Ok(None);
+        }
+        let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
+        let knocks = Self::fitted(&knocks, n_rows, sizes.floor_n, residual);
         // Averaged as accelerations are, a knock keeps about half of its size.
         let matters_n = if sizes.limited { sizes.matters_n } else { 0.5 * sizes.matters_n };
         Ok(knocks.filter(|knocks| knocks.all_rows_n > matters_n))
     }
 
-    /// Those in `recordings` that `model` leaves unexplained, where noise leaves `floor_n` of any model; none where there are
-    /// none that a mass explains. `thresholds` are those of the direction, `rest_length_m` is that of the muscle.
-    fn of(
+    /// All in `recordings`, with what `model` leaves around them. `thresholds` are those of the direction, `rest_length_m` is
+    /// that of the muscle.
+    fn all(
         recordings: &[Prepared],
         model: &AugmentedModel,
         thresholds: Thresholds,
         rest_length_m: f64,
-        floor_n: f64,
-    ) -> Result<Option<Self>, IdentifyError> {
+    ) -> Result<Vec<Knock>, IdentifyError> {
         let found: Result<Vec<Vec<Knock>>, IdentifyError> = recordings
             .par_iter()
             .enumerate()
@@ -109,6 +134,7 @@ impl Knocks {
                         line.times_s.push(instant.moment.time_s);
                         line.accelerations.push(instant.moment.acceleration_m_per_s2);
                         line.speeds.push(instant.moment.speed_m_per_s);
+                        line.knees.push(instant.knee);
                         line.residuals_n.push(instant.force_n - model_n);
                     }
                 })
@@ -116,16 +142,12 @@ impl Knocks {
                 Ok(lines.iter().flat_map(Line::knocks).collect())
             })
             .collect();
-        let knocks: Vec<Knock> = found?.into_iter().flatten().collect();
-        if knocks.len() < LEAST_KNOCKS {
-            return Ok(None);
-        }
-        let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
-        Ok(Self::fitted(&knocks, n_rows, floor_n))
+        Ok(found?.into_iter().flatten().collect())
     }
 
-    fn fitted(knocks: &[Knock], n_rows: usize, floor_n: f64) -> Option<Self> {
-        let (mount_hz, sums) = Self::mounted(knocks);
+    /// The mass that explains `knocks` in `n_rows` rows, where noise leaves `floor_n` of any model; none where there is none.
+    fn fitted(knocks: &[Knock], n_rows: usize, floor_n: f64, residual: Residual) -> Option<Self> {
+        let (mount_hz, sums) = Self::mounted(knocks, residual);
         let rest = |fold: usize| sums.iter().enumerate().filter(move |(index, _)| index % FOLDS != fold);
         let others: Vec<f64> = (0..FOLDS).map(|fold| Sums::total(rest(fold).map(|(_, sums)| sums)).slope()).collect();
         let mean = others.iter().sum::<f64>() / FOLDS as f64;
@@ -146,7 +168,7 @@ impl Knocks {
         let mass_kg = -Sums::total(&sums).slope();
         let (lightest_kg, heaviest_kg) = Self::effect().amplitudes()[0].range;
         let believed = (lightest_kg..=heaviest_kg).contains(&mass_kg)
-            && explained > EXPLAINED * without.mean_square()
+            && explained > EXPLAINED * (without.mean_square() - floor_n.powi(2))
             && explained > (TIMES_FLOOR * floor_n).powi(2)
             && chance(&without, &with) < CHANCE;
         let mut speeds: Vec<f64> = knocks.iter().map(|knock| knock.fastest_m_per_s).collect();
@@ -164,9 +186,9 @@ impl Knocks {
     }
 
     /// The mount that explains most of `knocks`, in Hz, and the sums behind it.
-    fn mounted(knocks: &[Knock]) -> (f64, Vec<Sums>) {
+    fn mounted(knocks: &[Knock], residual: Residual) -> (f64, Vec<Sums>) {
         let tried = |mount_hz: f64| {
-            let sums: Vec<Sums> = knocks.iter().map(|knock| knock.sums(mount_hz)).collect();
+            let sums: Vec<Sums> = knocks.iter().map(|knock| knock.sums(mount_hz, residual)).collect();
             (Sums::total(&sums).left(), mount_hz, sums)
         };
         let better = |best: (f64, f64, Vec<Sums>), mount_hz: f64| {
@@ -235,6 +257,8 @@ struct Line {
     /// In m/s.
     speeds: Vec<f64>,
     residuals_n: Vec<f64>,
+    /// Whether the speed changes at once before a row.
+    knees: Vec<bool>,
 }
 
 /// A knock with the rows around it.
@@ -245,7 +269,7 @@ struct Knock {
     accelerations: Vec<f64>,
     /// Rows before the window.
     before: usize,
-    /// In the window, averaged as the acceleration is.
+    /// In the window, averaged as the acceleration is: not at all at a knee.
     residuals_n: Vec<f64>,
     fastest_m_per_s: f64,
     /// Number of the recording, and the rows of the window in it.
@@ -289,7 +313,9 @@ impl Line {
                 let rows = &self.residuals_n[row + 1 - half..row + half];
                 rows.iter().zip(&weights).map(|(residual, weight)| residual * weight).sum()
             };
-            let residuals_n: Vec<f64> = window.clone().map(averaged).collect();
+            let is_knee = self.knees[window.clone()].contains(&true);
+            let residuals_n: Vec<f64> =
+                window.clone().map(|row| if is_knee { self.residuals_n[row] } else { averaged(row) }).collect();
             if residuals_n.iter().all(|residual| residual.is_finite()) {
                 knocks.push(Knock {
                     period_s,
@@ -305,7 +331,7 @@ impl Line {
     }
 }
 
-/// Sums over the rows of knocks of residual and acceleration, both cleared of level, slope and speed.
+/// Sums over the rows of knocks of residual and acceleration, both cleared of level, slope and perhaps speed.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     rows: f64,
@@ -341,7 +367,7 @@ impl Sums {
 }
 
 impl Knock {
-    fn sums(&self, mount_hz: f64) -> Sums {
+    fn sums(&self, mount_hz: f64, residual: Residual) -> Sums {
         let rows = self.residuals_n.len();
         let mut mount = Mount::new(mount_hz);
         let behind = self.accelerations.iter().map(|&acceleration| mount.follow(acceleration, self.period_s));
@@ -362,7 +388,7 @@ impl Knock {
             self.residuals_n.clone(),
         ];
         for mut column in columns {
-            for basis in cleared.iter().take(3) {
+            for basis in cleared.iter().take(residual.n_cleared()) {
                 let share = dot(basis, &column) / dot(basis, basis).max(f64::MIN_POSITIVE);
                 column.iter_mut().zip(basis).for_each(|(value, basis)| *value -= share * basis);
             }
@@ -423,6 +449,7 @@ mod tests {
             line.times_s.push(at as f64 * PERIOD_S);
             line.accelerations.push(averaged / (PERIOD_S * PERIOD_S));
             line.speeds.push((place(at + 8) - place(at.max(8) - 8)) / (16.0 * PERIOD_S));
+            line.knees.push(false);
             line.residuals_n.push(rows[at].1);
         }
         line
@@ -432,7 +459,7 @@ mod tests {
         let line = line(pull);
         let knocks = line.knocks();
         assert!(knocks.len() >= 40, "{}", knocks.len());
-        Knocks::fitted(&knocks, line.times_s.len(), 0.05)
+        Knocks::fitted(&knocks, line.times_s.len(), 0.05, Residual::WithSpeed)
     }
 
     #[test]

@@ -8,7 +8,7 @@ use pam_identification::search_space::SearchSpace;
 
 use crate::base;
 use crate::error::DiagnoseError;
-use crate::knocks::Knocks;
+use crate::knocks::{Knocks, Residual};
 use crate::search::{Found, Limits, search};
 use crate::state::Setting;
 use crate::track::Track;
@@ -69,13 +69,13 @@ impl<'a> Question<'a> {
     /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit; where they cannot be read back.
     pub fn answer(&self, track: Track, looked: &dyn Fn()) -> Result<Answer, DiagnoseError> {
         let (found, sizes) = self.search(&track, looked)?;
-        let Some(first) = self.knocks(&found, &sizes)? else {
+        let Some(first) = self.knocks(&found, &sizes, Residual::WithSpeed)? else {
             return Ok(Answer { track, found, knocks: None, sizes });
         };
         // What knocks leave on the grid around them would hide the rest, and would be taken for something else.
         let track = track.without(&first);
         let (found, sizes) = self.search(&track, looked)?;
-        let knocks = self.knocks(&found, &sizes)?.unwrap_or(first);
+        let knocks = self.knocks(&found, &sizes, Residual::Explained)?.unwrap_or(first);
         let sizes = sizes.with(&knocks);
         Ok(Answer { track, found, knocks: Some(knocks), sizes })
     }
@@ -88,9 +88,9 @@ impl<'a> Question<'a> {
         Ok((found, sizes))
     }
 
-    fn knocks(&self, found: &Found, sizes: &Sizes) -> Result<Option<Knocks>, DiagnoseError> {
+    fn knocks(&self, found: &Found, sizes: &Sizes, residual: Residual) -> Result<Option<Knocks>, DiagnoseError> {
         let state = &found.best.state;
         let explained = AugmentedModel::new(state.model.clone(), state.terms());
-        Ok(Knocks::that_matter(self.estimation, &explained, self.model, &self.limits, sizes)?)
+        Ok(Knocks::that_matter(self.estimation, &explained, self.model, &self.limits, sizes, residual)?)
     }
 }

@@ -122,7 +122,7 @@ impl Rehearsal {
                 slide_m: muscle.rest_length_m - here.2 + slide_by_pressure_m,
                 force_n: force_n(reach.model, here.1, here.2, point.direction),
             };
-            self.track.instants.push(Instant { row: at, moment, force_n: moment.force_n, settled: true });
+            self.track.instants.push(Instant { row: at, moment, force_n: moment.force_n, knee: false, settled: true });
             let left_s = if at == 0 { point.time_s } else { points[at - 1].time_s };
             let right_s = points.get(at + 1).map_or(point.time_s, |next| next.time_s);
             self.stands_for_s.push(0.5 * (right_s - left_s));

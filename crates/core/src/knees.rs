@@ -1,0 +1,198 @@
+//! Knees: instants at which a drive changes its speed faster than the sampling shows.
+//!
+//! Rigs run ramps, triangles and holds. Where such a path bends, a parabola over some tens of milliseconds smears the
+//! acceleration, and a mass that hangs on the drive would be knocked softly where it is knocked hard. So each bend is asked
+//! whether two straight lines that meet describe it down to the noise of the sensor. If they do, the path is taken as smooth
+//! but for that knee: rates come from what is left of the path without its knees, which lend their own.
+
+use crate::smoothing::Window;
+
+/// A curvature above so many of its own deviations is a bend.
+const BEND: f64 = 6.0;
+/// Two lines describe a bend if what they leave exceeds noise by no more than so many of its own deviations, as mean squares.
+const STRAIGHT: f64 = 3.0;
+/// Squared deviations of the noise by which two lines must describe it better than a parabola.
+const CLEARLY: f64 = 9.0;
+/// Steps of the search for the instant, per row.
+const STEPS_PER_ROW: usize = 10;
+
+/// A path without its knees, and what they change.
+#[derive(Debug, Default)]
+pub(crate) struct Knees {
+    /// The path, straight through where it has a knee.
+    pub(crate) rest: Vec<f64>,
+    /// Rate that the knees so far have added at every row, per second.
+    pub(crate) rates: Vec<f64>,
+    /// Second derivative by the knees over the step before every row, per second squared.
+    pub(crate) bends: Vec<f64>,
+}
+
+/// Where the rate changes, in rows, and by how much per row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Knee {
+    at: f64,
+    change: f64,
+}
+
+impl Knees {
+    /// Those of `path`, whose white noise has the deviation `noise`: first what is seen in the first of `windows`, then, in
+    /// what is left, what stands too close to another and is seen in the second.
+    pub(crate) fn of(path: &[f64], windows: [&Window; 2], noise: f64) -> Self {
+        let n = path.len();
+        let mut knees = Self { rest: path.to_vec(), rates: vec![0.0; n], bends: vec![0.0; n] };
+        for window in windows {
+            knees.take(&found(&knees.rest, window, noise), window.period_s);
+        }
+        knees
+    }
+
+    /// Takes `found` from the rest.
+    fn take(&mut self, found: &[Knee], period_s: f64) {
+        let last = self.rest.len().saturating_sub(1);
+        let mut ahead = found.iter().peekable();
+        // The line that the knees so far have added.
+        let (mut slope, mut height) = (0.0, 0.0);
+        for (row, (rest, rate)) in self.rest.iter_mut().zip(&mut self.rates).enumerate() {
+            while let Some(knee) = ahead.next_if(|knee| knee.at <= row as f64) {
+                slope += knee.change;
+                height -= knee.change * knee.at;
+            }
+            *rest -= slope * row as f64 + height;
+            *rate += slope / period_s;
+        }
+        for knee in found {
+            // Shared by two steps so that it acts, on average, when it does.
+            let middle = knee.at + 0.5;
+            let (first, share) = (middle.floor(), middle - middle.floor());
+            for (row, share) in [(first as usize, 1.0 - share), (first as usize + 1, share)] {
+                self.bends[row.min(last)] += share * knee.change / (period_s * period_s);
+            }
+        }
+    }
+}
+
+/// Knees of `path`, ascending.
+fn found(path: &[f64], window: &Window, noise: f64) -> Vec<Knee> {
+    let half = window.half;
+    let mut knees = Vec::new();
+    if path.len() <= 4 * half {
+        return knees;
+    }
+    // Nearer to an end the whole window nearest to it speaks.
+    let (first, end) = (half, path.len() - half);
+    let gate = BEND * noise * window.curvature_noise();
+    let curvature = |row: usize| window.parabola(path, row).curvature;
+    let mut row = first;
+    while row < end {
+        let (start, mut peak, mut highest) = (row, row, 0.0);
+        let sign = curvature(row).signum();
+        while row < end {
+            let bend = sign * curvature(row);
+            if bend <= gate {
+                break;
+            }
+            if bend > highest {
+                (peak, highest) = (row, bend);
+            }
+            row += 1;
+        }
+        // A longer bend is one that lasts.
+        if row > start && row - start <= 3 * half {
+            knees.extend(Knee::near(path, peak, half, noise));
+        }
+        row += 1;
+    }
+    knees
+}
+
+impl Knee {
+    /// The one within `half` rows of `peak`, if two lines describe the path there.
+    fn near(path: &[f64], peak: usize, half: usize, noise: f64) -> Option<Self> {
+        let n = 2 * half + 1;
+        let squares = (half * (half + 1) * n) as f64 / 3.0;
+        // Without level and slope.
+        let straightened = |values: &mut [f64]| {
+            let mean = values.iter().sum::<f64>() / n as f64;
+            let along = |index: usize| index as f64 - half as f64;
+            let slope = values.iter().enumerate().map(|(index, value)| along(index) * value).sum::<f64>() / squares;
+            values.iter_mut().enumerate().for_each(|(index, value)| *value -= mean + slope * along(index));
+        };
+        let mut around: Vec<f64> = path[peak - half..=peak + half].iter().map(|value| value - path[peak]).collect();
+        straightened(&mut around);
+        let dot = |left: &[f64], right: &[f64]| left.iter().zip(right).map(|(left, right)| left * right).sum::<f64>();
+        let reach = (half * STEPS_PER_ROW - STEPS_PER_ROW) as i32;
+        // What may as well bend evenly is no knee.
+        let mut bow: Vec<f64> = (0..n).map(|index| (index as f64 - half as f64).powi(2)).collect();
+        straightened(&mut bow);
+        let bowed = dot(&bow, &around).powi(2) / dot(&bow, &bow);
+        let tried = (-reach..=reach).map(|step| {
+            let from = f64::from(step) / STEPS_PER_ROW as f64;
+            let mut hinge: Vec<f64> = (0..n).map(|index| (index as f64 - half as f64 - from).max(0.0)).collect();
+            straightened(&mut hinge);
+            let (share, size) = (dot(&hinge, &around), dot(&hinge, &hinge));
+            (share * share / size, Self { at: peak as f64 + from, change: share / size })
+        });
+        let (explained, knee) = tried.max_by(|left, right| left.0.total_cmp(&right.0))?;
+        let freedom = (n - 4) as f64;
+        let left = dot(&around, &around) - explained;
+        let most = freedom + STRAIGHT * (2.0 * freedom).sqrt();
+        (left < most * noise * noise && explained - bowed > CLEARLY * noise * noise).then_some(knee)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::smoothing::{HALF_VALUE_WINDOW_S, HALF_WINDOW_S};
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+
+    const PERIOD_S: f64 = 0.005;
+    const NOISE_M: f64 = 30e-6;
+
+    fn noisy(place_m: impl Fn(f64) -> f64) -> Knees {
+        let normal = Normal::new(0.0, NOISE_M).unwrap();
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(2);
+        let time_s: Vec<f64> = (0..1000).map(|row| f64::from(row) * PERIOD_S).collect();
+        let path: Vec<f64> = time_s.iter().map(|&t| place_m(t) + normal.sample(&mut generator)).collect();
+        let windows = [HALF_WINDOW_S, HALF_VALUE_WINDOW_S].map(|half_s| Window::over(&time_s, half_s));
+        Knees::of(&path, [&windows[0], &windows[1]], NOISE_M)
+    }
+
+    #[test]
+    fn a_start_and_a_stop_between_rows_are_found() {
+        let knees = noisy(|t| 0.05 * (t.clamp(1.0012, 2.0031) - 1.0));
+        let bent: Vec<usize> = (0..1000).filter(|&row| knees.bends[row] != 0.0).collect();
+        assert!(bent.len() <= 4 && bent.iter().all(|row| row.abs_diff(200) <= 2 || row.abs_diff(401) <= 2), "{bent:?}");
+        // In time, and in size.
+        let moment = |rows: std::ops::Range<usize>| rows.map(|row| knees.bends[row] * PERIOD_S).collect::<Vec<_>>();
+        let (start, stop) = (moment(150..250), moment(350..450));
+        let size = |changes: &[f64]| changes.iter().sum::<f64>();
+        let middle_s = |changes: &[f64], first: f64| {
+            let rows = changes.iter().enumerate().map(|(index, change)| change * (index as f64 - 0.5)).sum::<f64>();
+            (first + rows / size(changes)) * PERIOD_S
+        };
+        assert!((size(&start) - 0.05).abs() < 2e-3 && (size(&stop) + 0.05).abs() < 2e-3);
+        assert!((middle_s(&start, 150.0) - 1.0012).abs() < 1e-3, "{}", middle_s(&start, 150.0));
+        assert!((middle_s(&stop, 350.0) - 2.0031).abs() < 1e-3, "{}", middle_s(&stop, 350.0));
+        // What is left and what the knees add make the speed.
+        for (row, speed) in [(50, 0.0), (210, 0.05), (380, 0.05), (405, 0.0), (900, 0.0)] {
+            let rest = (knees.rest[row + 15] - knees.rest[row]) / (15.0 * PERIOD_S);
+            assert!((rest + knees.rates[row] - speed).abs() < 2e-3, "{row}");
+        }
+    }
+
+    #[test]
+    fn a_short_move_has_both_its_knees() {
+        let knees = noisy(|t| 0.5 * (t.clamp(1.0012, 1.0431) - 1.0));
+        let change = |rows: std::ops::Range<usize>| rows.map(|row| knees.bends[row] * PERIOD_S).sum::<f64>();
+        assert!((change(198..203) - 0.5).abs() < 0.02 && (change(206..211) + 0.5).abs() < 0.02);
+    }
+
+    #[test]
+    fn a_bend_that_lasts_and_noise_have_no_knees() {
+        for knees in [noisy(|t| 0.005 * (12.0 * t).sin()), noisy(|_| 0.0), noisy(|t| 0.03 * (t - 2.5).powi(2))] {
+            assert!(knees.bends.iter().all(|bend| *bend == 0.0));
+        }
+    }
+}
