@@ -98,8 +98,7 @@ impl Knocks {
         sizes: &Sizes,
         residual: Residual,
     ) -> Result<Option<Self>, IdentifyError> {
-        let known = explained.terms().iter().any(|term| term.effect.page().id == ID);
-        if known || explained.terms().len() >= limits.max_effects || limits.excluded.iter().any(|id| id == ID) {
+        if explained.terms().len() >= limits.max_effects || limits.excluded.iter().any(|id| id == ID) {
             return Ok(None);
         }
         let knocks = Self::all(recordings, explained, model.direction, model.geometry.rest_length_m)?;
@@ -215,6 +214,16 @@ impl Knocks {
     #[expect(clippy::expect_used, reason = "the catalogue is fixed")]
     pub fn effect() -> &'static dyn Effect {
         effect(ID).expect("the catalogue has inertia")
+    }
+
+    /// The mass, in kg.
+    pub fn mass_kg(&self) -> f64 {
+        self.mass_kg
+    }
+
+    /// What it hangs on, at rest.
+    pub fn mount(&self) -> Mount {
+        Mount::new(self.mount_hz)
     }
 
     /// The effect with its values.

@@ -8,7 +8,7 @@ use pam_identification::search_space::SearchSpace;
 
 use crate::base;
 use crate::error::DiagnoseError;
-use crate::knocks::{Knocks, Residual};
+use crate::knocks::{self, Knocks, Residual};
 use crate::search::{Found, Limits, search};
 use crate::state::Setting;
 use crate::track::Track;
@@ -68,29 +68,33 @@ impl<'a> Question<'a> {
     /// # Errors
     /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit; where they cannot be read back.
     pub fn answer(&self, track: Track, looked: &dyn Fn()) -> Result<Answer, DiagnoseError> {
-        let (found, sizes) = self.search(&track, looked)?;
+        let (found, sizes) = self.search(&track, &self.limits, looked)?;
         let Some(first) = self.knocks(&found, &sizes, Residual::WithSpeed)? else {
             return Ok(Answer { track, found, knocks: None, sizes });
         };
-        // What knocks leave on the grid around them would hide the rest, and would be taken for something else.
+        // What knocks leave on the grid around them would hide the rest, and would be taken for something else. The mass itself
+        // is known better from them than from what is smooth.
         let track = track.without(&first);
-        let (found, sizes) = self.search(&track, looked)?;
+        let mut limits = self.limits.clone();
+        limits.excluded.push(knocks::ID.to_owned());
+        let (found, sizes) = self.search(&track, &limits, looked)?;
         let knocks = self.knocks(&found, &sizes, Residual::Explained)?.unwrap_or(first);
         let sizes = sizes.with(&knocks);
         Ok(Answer { track, found, knocks: Some(knocks), sizes })
     }
 
-    fn search(&self, track: &Track, looked: &dyn Fn()) -> Result<(Found, Sizes), DiagnoseError> {
+    fn search(&self, track: &Track, limits: &Limits, looked: &dyn Fn()) -> Result<(Found, Sizes), DiagnoseError> {
         let start = base::coordinates(self.model, &self.space);
-        let found = search(&self.setting(track), &start, &self.model.force_model(), &self.limits, looked)
+        let found = search(&self.setting(track), &start, &self.model.force_model(), limits, looked)
             .ok_or_else(|| DiagnoseError::Undetermined { path: self.estimation[0].recording.path.clone() })?;
-        let sizes = Sizes::of(&found, &self.limits);
+        let sizes = Sizes::of(&found, limits);
         Ok((found, sizes))
     }
 
     fn knocks(&self, found: &Found, sizes: &Sizes, residual: Residual) -> Result<Option<Knocks>, DiagnoseError> {
         let state = &found.best.state;
-        let explained = AugmentedModel::new(state.model.clone(), state.terms());
+        let others = state.terms().into_iter().filter(|term| term.effect.page().id != knocks::ID).collect();
+        let explained = AugmentedModel::new(state.model.clone(), others);
         Ok(Knocks::that_matter(self.estimation, &explained, self.model, &self.limits, sizes, residual)?)
     }
 }

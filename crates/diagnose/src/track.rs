@@ -123,9 +123,16 @@ impl Track {
         }
     }
 
-    /// The same, but what `knocks` touch does not count.
+    /// The same, but what `knocks` touch does not count, and the pull of their mass is taken off the rest.
     #[must_use]
     pub fn without(mut self, knocks: &Knocks) -> Self {
+        for range in &self.recordings {
+            let mut mount = knocks.mount();
+            for instant in &mut self.instants[range.clone()] {
+                let behind = mount.follow(instant.moment.acceleration_m_per_s2, instant.moment.step_s);
+                instant.force_n += knocks.mass_kg() * behind;
+            }
+        }
         for (recording, rows) in &knocks.touched {
             let range = self.recordings[*recording].clone();
             let within = &self.instants[range.clone()];
