@@ -69,6 +69,11 @@ impl State {
         };
         self.guesses.iter().map(term).collect()
     }
+
+    /// Whether the muscle may hang slack in it.
+    pub fn hangs_slack(&self) -> bool {
+        self.guesses.iter().any(|guess| guess.effect.role() == Role::Reads)
+    }
 }
 
 /// What the load cell reads of a force `F` at every instant: `slope F + offset_n`.
@@ -159,9 +164,8 @@ impl<'a> Setting<'a> {
 
     /// Fits `guesses` and the base, starting from `state`.
     pub fn fit_near(&self, guesses: Vec<Guess>, state: &State) -> Option<State> {
-        let reads = state.guesses.iter().any(|guess| guess.effect.role() == Role::Reads);
         let near = &state.fit.x[..self.space.free.len()];
-        self.fit_from(guesses, near, &state.model, reads.then_some(&state.read))
+        self.fit_from(guesses, near, &state.model, state.hangs_slack().then_some(&state.read))
     }
 
     /// Fits `state` without its effect `index`.

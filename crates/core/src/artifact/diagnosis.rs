@@ -287,3 +287,25 @@ impl DiagnosisArtifact {
         super::read(path, SCHEMA, "pam-diagnose")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_schema_is_refused_by_name() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("diagnosis.json");
+        let refusal = |schema: &str| {
+            std::fs::write(&path, format!("{{\"schema\": \"{schema}\"}}")).expect("a file");
+            let refused = DiagnosisArtifact::read(&path).expect_err("a refusal").to_string();
+            refused.replace(&format!("{}{}", folder.path().display(), std::path::MAIN_SEPARATOR), "")
+        };
+        let messages = ["pam-diagnosis/0", "pam-diagnosis/2", "pam-model/1"].map(refusal);
+        insta::assert_snapshot!(messages.join("\n"), @r#"
+        diagnosis.json: schema is "pam-diagnosis/0", expected "pam-diagnosis/1"; an older version wrote it; write it anew with pam-diagnose
+        diagnosis.json: schema is "pam-diagnosis/2", expected "pam-diagnosis/1"; a newer version wrote it; update the programs, or write it anew with pam-diagnose
+        diagnosis.json: schema is "pam-model/1", expected "pam-diagnosis/1"; write it with pam-diagnose
+        "#);
+    }
+}

@@ -95,8 +95,8 @@ static PAGE: Page = Page {
         Symbol {
             symbol: "w",
             unit: "N",
-            meaning: "softness: a bent muscle straightens bit by bit before it is taut; 0 for a cable, 15 and 25 N for \
-                      two Festo muscles of 10 mm, 30 and 20 cm long",
+            meaning: "softness: a bent muscle straightens bit by bit; 0 for a cable, 15 and 25 N measured on two Festo \
+                      muscles (10 mm; 30 and 20 cm)",
         },
     ],
     validity: "A cable without mass; dead length that has to be taken up again is left out.",

@@ -13,6 +13,8 @@ const GUARD_S: f64 = 0.025;
 
 /// Values below and above which a channel is lost.
 type Limits = (f64, f64);
+/// A channel of a chunk.
+type Column = fn(&Chunk) -> &[f64];
 
 impl ChannelQuality {
     /// Whether the low end that the channel is stuck at is the end of its range, rather than where the muscle itself
@@ -40,7 +42,7 @@ impl RecordingQuality {
             let high = if channel.ends_high() { channel.highest } else { f64::INFINITY };
             (low.is_finite() || high.is_finite()).then_some((low, high))
         };
-        let columns: [(&str, fn(&Chunk) -> &[f64]); 2] = [("pressure", Chunk::pressure_pa), ("force", Chunk::force_n)];
+        let columns: [(&str, Column); 2] = [("pressure", Chunk::pressure_pa), ("force", Chunk::force_n)];
         let watched: Vec<_> = columns.iter().filter_map(|(name, column)| Some((limits(name)?, column))).collect();
         let mut found: Vec<Range<usize>> = Vec::new();
         if watched.is_empty() {
@@ -51,7 +53,7 @@ impl RecordingQuality {
             let chunk = chunk?;
             for row in chunk.rows() {
                 let here = row - chunk.first_row();
-                let lost = |((low, high), column): &(Limits, &fn(&Chunk) -> &[f64])| {
+                let lost = |((low, high), column): &(Limits, &Column)| {
                     let value = column(&chunk)[here];
                     value <= *low || value >= *high
                 };
@@ -86,7 +88,7 @@ mod tests {
             path: "r.csv".to_owned(),
             sha256: String::new(),
             samples,
-            segments: vec![0..2000],
+            segments: std::iter::once(0..2000).collect(),
             repairs: Repairs::default(),
             ignored_columns: Vec::new(),
         }

@@ -1,5 +1,6 @@
 //! Where a muscle may be taken, and the numbers of the protocols scaled to it.
 
+use pam_core::artifact::model::Domain;
 use pam_core::force::ForceModel;
 
 /// Rest length for which distances and speeds of the protocols are written, in m.
@@ -22,7 +23,21 @@ pub(crate) struct Reach<'a> {
     pub lowest_tension_n: f64,
 }
 
-impl Reach<'_> {
+impl<'a> Reach<'a> {
+    /// What a model covers: pressures and lengths of its recordings, and where it is taut there.
+    pub(crate) fn of(domain: &Domain, model: &'a ForceModel, may_hang_slack: bool) -> Self {
+        Self {
+            model,
+            pressure_pa: (domain.pressure_pa[0].max(0.0), domain.pressure_pa[1]),
+            length_m: (domain.length_m[0], domain.length_m[1]),
+            lowest_tension_n: if may_hang_slack {
+                f64::NEG_INFINITY
+            } else {
+                (0.01 * domain.force_n[1]).max(domain.force_n[0])
+            },
+        }
+    }
+
     pub(super) fn pressure(&self, kilopascal: f64) -> f64 {
         let (low, high) = self.pressure_pa;
         low + (kilopascal / REFERENCE_KPA).clamp(0.0, 1.0) * (high - low)
