@@ -1,7 +1,7 @@
 //! Stribeck effect: friction that is larger at a crawl than in motion.
 //!
 //! ```text
-//! F = F_base - s f_s p π D L h,   dh/|dx| = (exp(-|v| / v_s) - h) / δ,   δ = 0.1 mm
+//! F = F_base - s f_s p π D L h,   dh/|dx| = (exp(-(|v| / v_s)ⁿ) - h) / δ,   δ = 0.1 mm
 //! ```
 //!
 //! Friction follows the speed with the travel that renews the contacts: a stop from full speed leaves it small until the next
@@ -34,12 +34,15 @@ impl Effect for Stribeck {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape {
-            name: "stribeck_speed_m_per_s",
-            unit: "m/s",
-            range: (3e-4, 5e-2),
-            grid: &[1e-3, 2e-3, 5e-3, 1e-2, 2e-2],
-        }]
+        &[
+            Shape {
+                name: "stribeck_speed_m_per_s",
+                unit: "m/s",
+                range: (3e-4, 5e-2),
+                grid: &[1e-3, 2e-3, 5e-3, 1e-2, 2e-2],
+            },
+            Shape { name: "exponent", unit: "1", range: (0.5, 2.5), grid: &[1.0, 2.0] },
+        ]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
@@ -47,19 +50,20 @@ impl Effect for Stribeck {
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { stribeck_speed_m_per_s: shape[0], last: None })
+        Box::new(State { stribeck_speed_m_per_s: shape[0], exponent: shape[1], last: None })
     }
 }
 
 struct State {
     stribeck_speed_m_per_s: f64,
+    exponent: f64,
     /// Recording, slide and `h` of the moment before.
     last: Option<(usize, f64, f64)>,
 }
 
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
-        let crawl = (-now.slide_speed_m_per_s.abs() / self.stribeck_speed_m_per_s).exp();
+        let crawl = (-(now.slide_speed_m_per_s.abs() / self.stribeck_speed_m_per_s).powf(self.exponent)).exp();
         let level = match self.last {
             Some((recording, slide_m, level)) if recording == now.recording => {
                 crawl + (level - crawl) * (-(now.slide_m - slide_m).abs() / RENEWAL_M).exp()
@@ -76,7 +80,7 @@ static PAGE: Page = Page {
     name: "Stribeck effect",
     summary: "Friction of the braid is larger at a crawl than in motion. It falls with the speed over some millimetres \
               per second and breaks away behind a rest, which makes slow motion under a soft load jerky.",
-    equation: "F = F_base - s f_s p π D L h,  dh/|dx| = (exp(-|v| / v_s) - h) / δ,  δ = 0.1 mm",
+    equation: "F = F_base - s f_s p π D L h,  dh/|dx| = (exp(-(|v| / v_s)ⁿ) - h) / δ,  δ = 0.1 mm",
     symbols: &[
         Symbol {
             symbol: "f_s",
@@ -84,6 +88,7 @@ static PAGE: Page = Page {
             meaning: "friction at a crawl above that in motion, in units of eq. 9; 0.1 to 1 times f'",
         },
         Symbol { symbol: "v_s", unit: "m/s", meaning: "speed at which 63 % of it are gone; 1 to 20 mm/s" },
+        Symbol { symbol: "n", unit: "1", meaning: "how steeply it falls; 0.5 to 2 in the literature" },
         Symbol { symbol: "s", unit: "1", meaning: "direction of motion, kept at standstill" },
         Symbol { symbol: "v", unit: "m/s", meaning: "speed of contraction" },
         Symbol { symbol: "h", unit: "1", meaning: "1 at a crawl, 0 in motion; it follows with the travel" },
@@ -125,7 +130,7 @@ mod tests {
     #[test]
     fn it_falls_from_static_friction_to_nothing() {
         let at = |slide_speed_m_per_s| {
-            let mut memory = Stribeck.start(&nominal(), &[5e-3]);
+            let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0]);
             pull(&mut *memory, &Moment { slide_speed_m_per_s, ..still() }, &base())[0]
         };
         assert_eq!(at(0.0), -base().normal_n);
@@ -135,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_stop_leaves_it_as_it_was_and_a_crawl_renews_it() {
-        let mut memory = Stribeck.start(&nominal(), &[5e-3]);
+        let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0]);
         let mut at = |slide_m, slide_speed_m_per_s| {
             pull(&mut *memory, &Moment { slide_m, slide_speed_m_per_s, ..still() }, &base())[0] / -base().normal_n
         };
@@ -147,7 +152,7 @@ mod tests {
 
     #[test]
     fn it_opposes_the_motion() {
-        let mut memory = Stribeck.start(&nominal(), &[5e-3]);
+        let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0]);
         let now = Moment { slide_speed_m_per_s: -1e-3, direction: -1.0, ..still() };
         assert!(pull(&mut *memory, &now, &base())[0] > 0.0);
     }
