@@ -5,6 +5,8 @@
 //! enters less what reference weights say. A triangle for a group of blocks follows from a Cholesky factorization, and
 //! candidates that only add columns are appended without touching the rows of eq. 11 again.
 
+use std::ops::Range;
+
 use nalgebra::DMatrix;
 use pam_optim::summary::{BLOCK_ROWS, Summary};
 use rayon::prelude::*;
@@ -20,8 +22,12 @@ pub struct Normal {
     triangle: Vec<f64>,
     /// Reference weights, `n` of them.
     reference: Vec<f64>,
-    /// `Z` and the force less the reference, row-major, `n + 1` values each; zero where a row does not count.
+    /// `Z` and the force less the reference of the rows that count, row-major, `n + 1` values each.
     rows: Vec<f64>,
+    /// Which rows count, ascending.
+    counted: Vec<usize>,
+    /// Those of each block, as a range of the counted ones.
+    of_block: Vec<Range<usize>>,
     /// Products of the rows of each block, `(n + 1)²`.
     products: Vec<DMatrix<f64>>,
     /// Rows of each block that count.
@@ -41,8 +47,7 @@ pub struct Extended<'a> {
 }
 
 impl Normal {
-    /// Normal equations of rows of `n` columns with the forces `force_n`; rows that do not count have been zeroed by
-    /// `counted`.
+    /// Normal equations of rows of `n` columns with the forces `force_n`, at the instants that `counted` says count.
     pub fn new(
         track: &Track,
         columns: &[f64],
@@ -88,11 +93,15 @@ impl Normal {
         // A column that is a combination of those before it has no coordinate of its own.
         let alive: Vec<bool> =
             (0..n).map(|column| triangle[column * n + column].abs() > 1e-11 * largest[column].max(1e-300)).collect();
-        let mut rows = vec![0.0; track.n() * width];
-        rows.par_chunks_exact_mut(width).enumerate().for_each(|(at, row)| {
-            if !counted[at] {
-                return;
-            }
+        let mut of_block = Vec::with_capacity(track.blocks.len());
+        let mut listed: Vec<usize> = Vec::with_capacity(track.n());
+        for block in &track.blocks {
+            let first = listed.len();
+            listed.extend(block.clone().filter(|&at| counted[at]));
+            of_block.push(first..listed.len());
+        }
+        let mut rows = vec![0.0; listed.len() * width];
+        rows.par_chunks_exact_mut(width).zip(&listed).for_each(|(row, &at)| {
             for column in 0..n {
                 if !alive[column] {
                     continue;
@@ -105,13 +114,12 @@ impl Normal {
             }
             row[n] = residual(at);
         });
-        let products = track
-            .blocks
+        let products = of_block
             .par_iter()
             .map(|block| products_of(&rows[block.start * width..block.end * width], width))
             .collect();
-        let counts = track.blocks.iter().map(|block| block.clone().filter(|&at| counted[at]).count() as f64).collect();
-        Self { n, triangle, reference, rows, products, counts }
+        let counts = of_block.iter().map(|block| block.len() as f64).collect();
+        Self { n, triangle, reference, rows, counted: listed, of_block, products, counts }
     }
 
     /// Rows of each block that count.
@@ -119,9 +127,9 @@ impl Normal {
         &self.counts
     }
 
-    /// `Z` and the force less the reference of every row, `n + 1` values each.
-    pub fn rows(&self) -> &[f64] {
-        &self.rows
+    /// Rows that count, each with its instant: `Z` and the force less the reference, `n + 1` values.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        self.counted.iter().copied().zip(self.rows.chunks_exact(self.n + 1))
     }
 
     /// Weights of the columns in the coordinates of `Z`, less the reference.
@@ -143,21 +151,18 @@ impl Normal {
     }
 
     /// With `more` columns (row-major, `k` per row) behind.
-    pub fn extend(&self, track: &Track, more: &[f64], k: usize) -> Extended<'_> {
+    pub fn extend(&self, more: &[f64], k: usize) -> Extended<'_> {
         let width = self.n + 1;
         let scales: Vec<f64> = (0..k)
             .map(|column| {
-                let squares: f64 = (0..track.n())
-                    .filter(|&at| self.rows[at * width..(at + 1) * width].iter().any(|&v| v != 0.0))
-                    .map(|at| more[at * k + column].powi(2))
-                    .sum();
+                let squares: f64 = self.counted.iter().map(|&at| more[at * k + column].powi(2)).sum();
                 if squares.is_finite() { squares.sqrt() } else { 0.0 }
             })
             .collect();
         let inverse: Vec<f64> = scales.iter().map(|&scale| if scale > 0.0 { 1.0 / scale } else { 0.0 }).collect();
         let total = width + k;
-        let products: Vec<DMatrix<f64>> = track
-            .blocks
+        let products: Vec<DMatrix<f64>> = self
+            .of_block
             .par_iter()
             .zip(&self.products)
             .map(|(block, own)| {
@@ -171,11 +176,8 @@ impl Normal {
                 }
                 let mut cross = vec![0.0; k * width];
                 let mut squares = vec![0.0; k * k];
-                for at in block.clone() {
-                    let row = &self.rows[at * width..(at + 1) * width];
-                    if row.iter().all(|&value| value == 0.0) {
-                        continue;
-                    }
+                let rows = self.rows[block.start * width..block.end * width].chunks_exact(width);
+                for (row, &at) in rows.zip(&self.counted[block.clone()]) {
                     for column in 0..k {
                         let value = more[at * k + column] * inverse[column];
                         if value == 0.0 {

@@ -9,6 +9,9 @@ use crate::state::Setting;
 const BINS: usize = 24;
 /// An interval belongs to a region as long as its density is at least this share of the highest.
 const EDGE: f64 = 0.2;
+/// One that does not is bridged where the next one behind it has at least this share: a residual that changes its sign goes
+/// through zero.
+const BEHIND_A_DIP: f64 = 0.3;
 
 /// The interval of `coordinate` in which the mean of `excess` (in N² at every instant) is concentrated; none where there is
 /// no excess. Time is looked at one recording after the other.
@@ -59,12 +62,13 @@ pub fn concentrated(
         return None;
     }
     let inside = |bin: usize| density[bin] >= EDGE * highest || counts[bin] < fewest;
+    let high_again = |bin: usize| density.get(bin).is_some_and(|density| *density >= BEHIND_A_DIP * highest);
     let mut first = peak;
-    while first > 0 && inside(first - 1) {
+    while first > 0 && (inside(first - 1) || (first > 1 && high_again(first - 2))) {
         first -= 1;
     }
     let mut last = peak;
-    while last + 1 < density.len() && inside(last + 1) {
+    while last + 1 < density.len() && (inside(last + 1) || high_again(last + 2)) {
         last += 1;
     }
     // Empty intervals at the rim belong to nobody.

@@ -282,16 +282,19 @@ fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], 
             .filter_map(|feature| Some((remainder.structure(&[feature])?.held_out.mean_square(), feature)))
             .min_by(|left, right| left.0.total_cmp(&right.0));
         let Some((beside, feature)) = telling else { return best };
-        if nothing.held_out.mean_square() - beside < STRUCTURED * whole {
+        let structure = nothing.held_out.mean_square() - beside;
+        if structure < STRUCTURED * whole {
             return best;
         }
         let stand_in = (0..best.state.guesses.len()).find_map(|index| {
             let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
             let gained = rest.held_out.mean_square() - best.held_out.mean_square();
             let without = Remainder::of(setting, &rest.state).structure(&[feature])?.held_out.mean_square();
-            // What explains most of it, or lives in that very coordinate, stands for itself.
+            // What explains most of it stands for itself. What explains less than is left there does not, nor what a function
+            // of that coordinate replaces, unless that is where the effect lives.
             let lives_there = best.state.guesses[index].effect.page().coordinate == feature.coordinate;
-            (!lives_there && gained < STANDS_FOR_ITSELF * whole && without - beside < KEPT * gained).then_some(rest)
+            let replaced = !lives_there && without - beside < KEPT * gained;
+            (gained < STANDS_FOR_ITSELF * whole && (gained < structure || replaced)).then_some(rest)
         });
         match stand_in {
             Some(rest) => best = rest,

@@ -51,7 +51,13 @@ impl Ground<'_> {
             .par_iter()
             .map(|range| self.recording_sheet(range.clone(), guesses, model, width))
             .collect();
-        let mut sheet = Sheet { seen: Vec::new(), base: Vec::new(), columns: Vec::new(), width };
+        let n = self.track.n();
+        let mut sheet = Sheet {
+            seen: Vec::with_capacity(n),
+            base: Vec::with_capacity(n),
+            columns: Vec::with_capacity(n * width),
+            width,
+        };
         for part in parts {
             sheet.seen.extend(part.seen);
             sheet.base.extend(part.base);

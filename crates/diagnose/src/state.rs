@@ -197,7 +197,7 @@ impl<'a> Setting<'a> {
                     linear.as_ref().map_or((&sheet.columns, &force_n), |(rows, forces)| (rows, forces));
                 Normal::new(self.track, rows, sheet.width, measured, self.counted(), reference.clone())
             };
-            let fit = self.joint(&limits).fit_all(&normal.extend(self.track, &[], 0), &start)?;
+            let fit = self.joint(&limits).fit_all(&normal.extend(&[], 0), &start)?;
             // The last readings have not settled: this fit is under them.
             let settled = match &mut reads {
                 Some(memory) if rounds_left > 0 => {
@@ -218,26 +218,26 @@ impl<'a> Setting<'a> {
     /// Fits of `state` that each leave one fold out.
     pub fn fold_fits(&self, state: &State) -> Option<Vec<JointFit>> {
         let limits = ranges(&state.guesses);
-        let rows = state.normal.extend(self.track, &[], 0);
+        let rows = state.normal.extend(&[], 0);
         self.joint(&limits).fold_fits(&rows, &state.fit.x, &self.track.fold_of_block)
     }
 
     /// Mean squares of `state` over held-out blocks.
     pub fn hold_out(&self, state: &State) -> Option<HeldOut> {
         let limits = ranges(&state.guesses);
-        self.joint(&limits).hold_out(&state.normal.extend(self.track, &[], 0), &state.fit.x, &self.track.fold_of_block)
+        self.joint(&limits).hold_out(&state.normal.extend(&[], 0), &state.fit.x, &self.track.fold_of_block)
     }
 
     /// Joint fit of `state` and one more guess that only adds.
     pub fn fit_more(&self, state: &State, guess: &Guess) -> Option<JointFit> {
         let (rows, limits) = self.more(state, guess);
-        self.joint(&limits).fit_all(&state.normal.extend(self.track, &rows, guess.amplitudes().len()), &state.fit.x)
+        self.joint(&limits).fit_all(&state.normal.extend(&rows, guess.amplitudes().len()), &state.fit.x)
     }
 
     /// Joint fit of `state` and one more guess that only adds, and its mean squares over held-out blocks.
     pub fn weigh_more(&self, state: &State, guess: &Guess) -> Option<(JointFit, HeldOut)> {
         let (rows, limits) = self.more(state, guess);
-        let rows = state.normal.extend(self.track, &rows, guess.amplitudes().len());
+        let rows = state.normal.extend(&rows, guess.amplitudes().len());
         let joint = self.joint(&limits);
         let held_out = joint.hold_out(&rows, &state.fit.x, &self.track.fold_of_block)?;
         Some((joint.fit_all(&rows, &state.fit.x)?, held_out))

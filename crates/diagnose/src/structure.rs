@@ -196,20 +196,16 @@ impl Remainder {
         let q = if free.is_empty() { directions } else { directions.qr().q() };
         let n_directions = q.ncols();
         let residuals_n = setting.residuals_n(state);
-        let z = state.normal.rows();
         let n = setting.track.n();
         let counted = setting.track.counted.clone();
         let mut rows = vec![0.0; n * (n_directions + 1)];
-        rows.par_chunks_exact_mut(n_directions + 1).enumerate().for_each(|(at, row)| {
-            if !counted[at] {
-                return;
-            }
-            let columns = &z[at * (width + 1)..at * (width + 1) + width];
+        for (at, columns) in state.normal.rows() {
+            let row = &mut rows[at * (n_directions + 1)..(at + 1) * (n_directions + 1)];
             for (direction, value) in row[..n_directions].iter_mut().enumerate() {
-                *value = columns.iter().zip(q.column(direction).iter()).map(|(a, b)| a * b).sum();
+                *value = columns[..width].iter().zip(q.column(direction).iter()).map(|(a, b)| a * b).sum();
             }
             row[n_directions] = residuals_n[at];
-        });
+        }
         debug_assert!(width >= N_COLUMNS);
         Self {
             rows,

@@ -63,7 +63,9 @@ impl Sizes {
 
 /// The verdict, for what the search found; `knocks` says whether a mass was named besides.
 pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
-    let structured = sizes.left_n > 0.5 * sizes.matters_n && sizes.share_left() > MOST_LEFT;
+    // What matters by itself is not explained however much more has been.
+    let structured =
+        sizes.left_n > sizes.matters_n || (sizes.left_n > 0.5 * sizes.matters_n && sizes.share_left() > MOST_LEFT);
     if found.best.state.guesses.is_empty() && !knocks {
         // The floor is an upper bound: smooth functions may not follow all that is there. So what they do follow must not be
         // much of the residual, either.

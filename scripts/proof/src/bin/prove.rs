@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Result, ensure};
+use anyhow::{Context as _, Result, ensure};
 use clap::Parser;
 use pam_cli::{Console, RunArgs, Verdict};
 use pam_proof::programs::Programs;
@@ -53,6 +53,10 @@ fn main() -> std::process::ExitCode {
 fn run(args: &Args) -> Result<Verdict> {
     let console = args.run.start()?;
     ensure!(args.cases > 0, "--cases 0 proves nothing");
+    // Before an hour of work, not behind it.
+    if let Some(folder) = &args.record {
+        std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+    }
     if let Some(folder) = &args.generate_only {
         let sealed = draw(args, folder, &console)?;
         sealed.generate(&Programs::without_diagnosis()?, &console)?;

@@ -32,6 +32,9 @@ fn run(args: &Args) -> Result<Verdict> {
     let own = std::env::current_exe()?;
     let bin = own.parent().context("the running program has no folder")?;
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    if let Some(folder) = &args.record {
+        std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+    }
     let mut results = Vec::new();
     for muscle in MUSCLES {
         console.note(format!("diagnosing the muscle cut to {}", muscle.cut));
