@@ -10,6 +10,11 @@ use rayon::prelude::*;
 use crate::normal::Extended;
 use crate::track::FOLDS;
 
+/// The one parameter, but for the compliance of the strands, that eq. 11 is not linear in.
+const K2: Free = Free::One(Parameter::K2);
+/// The ranges of k₂ are the same for every modulus of the strands.
+const ANY_MODULUS_PA: f64 = 3e9;
+
 /// Parameters of a joint fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointFit {
@@ -98,16 +103,14 @@ impl Joint<'_> {
         })
     }
 
-    /// Another start than `start`, if the descent from there to `end` found nothing of an effect: eq. 11 is not linear in
-    /// k₂, and one that has grown to stand in for an effect keeps the descent from finding it.
+    /// Another start than `start`, if the descent from there came to an `end` with a k₂ that no muscle has: eq. 11 is not
+    /// linear in it, and one that has grown to stand in for an effect keeps the descent from finding that.
     fn elsewhere(&self, start: &[f64], end: &[f64]) -> Option<Vec<f64>> {
-        let n_free = self.space.free.len();
-        let none_of_it = self.ranges.iter().zip(&end[n_free..]).any(|(&(low, _), &x)| low == 0.0 && x <= 0.0);
-        let k2 = self.space.free.iter().position(|free| *free == Free::One(Parameter::K2))?;
-        let nominal = self.space.nominal_coordinate(k2, 0.0);
-        none_of_it.then(|| {
+        let k2 = self.space.free.iter().position(|free| *free == K2)?;
+        let (low, high) = K2.ranges(ANY_MODULUS_PA).plausible;
+        (!(low..=high).contains(&self.space.value(k2, end[k2]))).then(|| {
             let mut other = start.to_vec();
-            other[k2] = nominal;
+            other[k2] = self.space.nominal_coordinate(k2, ANY_MODULUS_PA);
             other
         })
     }

@@ -24,6 +24,8 @@ pub struct Sizes {
 
 /// Share of the mismatch (mean squares) that may be left of an explanation.
 const MOST_LEFT: f64 = 0.3;
+/// The same of what matters by itself: less is what the form of an effect that is otherwise right leaves of it.
+const LEAST_LEFT: f64 = 0.08;
 /// Share of a consistent residual (mean squares) that may be structured.
 const MOST_STRUCTURED: f64 = 0.3;
 /// The same for an effect that the catalogue says it is confused with.
@@ -63,9 +65,8 @@ impl Sizes {
 
 /// The verdict, for what the search found; `knocks` says whether a mass was named besides.
 pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
-    // What matters by itself is not explained however much more has been.
-    let structured =
-        sizes.left_n > sizes.matters_n || (sizes.left_n > 0.5 * sizes.matters_n && sizes.share_left() > MOST_LEFT);
+    let more_than = |times: f64, share: f64| sizes.left_n > times * sizes.matters_n && sizes.share_left() > share;
+    let structured = more_than(0.5, MOST_LEFT) || more_than(1.0, LEAST_LEFT);
     if found.best.state.guesses.is_empty() && !knocks {
         // The floor is an upper bound: smooth functions may not follow all that is there. So what they do follow must not be
         // much of the residual, either.

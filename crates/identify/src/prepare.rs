@@ -3,7 +3,7 @@
 use pam_core::direction::{Direction, Driver, Thresholds};
 use pam_core::force::Form;
 use pam_core::muscle::Muscle;
-use pam_core::quality::RecordingQuality;
+use pam_core::quality::{RecordingQuality, SensorEnds};
 use pam_core::recording::Recording;
 use rayon::prelude::*;
 
@@ -69,13 +69,14 @@ pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn direct(gates: Vec<Gated>, thresholds: Thresholds, form: Form) -> Result<Vec<Prepared>, IdentifyError> {
+    let ends = SensorEnds::of(gates.iter().map(|gate| &gate.quality));
     let driver = if form == Form::AsPrinted { Driver::Pressure } else { Driver::Motion };
     gates
         .into_par_iter()
         .map(|Gated { recording, quality }| {
             let direction = || {
                 let mut direction = Direction::of(&recording, thresholds, driver)?;
-                quality.out_of_range(&recording)?.into_iter().for_each(|rows| direction.leave_out(rows));
+                ends.reached(&recording, &quality)?.into_iter().for_each(|rows| direction.leave_out(rows));
                 Ok(direction)
             };
             match direction() {

@@ -9,4 +9,5 @@ pub mod out_of_range;
 pub mod recording;
 
 pub use channel::ChannelQuality;
+pub use out_of_range::SensorEnds;
 pub use recording::RecordingQuality;

@@ -11,56 +11,82 @@ const TARE_N: f64 = 20.0;
 /// What is left out to either side, in s: what a smooth value there is averaged over.
 const GUARD_S: f64 = 0.025;
 
-/// Values below and above which a channel is lost.
-type Limits = (f64, f64);
-/// A channel of a chunk.
-type Column = fn(&Chunk) -> &[f64];
+/// A channel that flickers by so many of its steps is not at one value for long by chance.
+const STEPS: f64 = 2.0;
 
 impl ChannelQuality {
+    fn flickers(&self) -> bool {
+        self.quantization_step.is_none_or(|step| self.noise > STEPS * step)
+    }
+
     /// Whether the low end that the channel is stuck at is the end of its range, rather than where the muscle itself
     /// leaves it: slack, or vented.
     pub fn ends_low(&self) -> bool {
-        self.clipped_low_share > 0.0 && self.name == "force" && self.lowest < -TARE_N
+        self.clipped_low_share > 0.0 && self.flickers() && self.name == "force" && self.lowest < -TARE_N
     }
 
     /// Whether the high end that the channel is stuck at is the end of its range. A length rests where it is held.
     pub fn ends_high(&self) -> bool {
-        self.clipped_high_share > 0.0 && self.name != "length"
+        self.clipped_high_share > 0.0 && self.flickers() && self.name != "length"
     }
 }
 
-impl RecordingQuality {
-    /// Stretches of rows in which the load cell or the pressure gauge is out of its range, ascending; neighbors may
-    /// overlap.
+/// The ends of the ranges of load cells and pressure gauges, as far as recordings show them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SensorEnds {
+    /// Name of a channel and its lowest value.
+    low: Vec<(String, f64)>,
+    /// Name of a channel and its highest value.
+    high: Vec<(String, f64)>,
+}
+
+impl SensorEnds {
+    /// Those that show in any of `recordings`: another one may touch them for a moment only.
+    pub fn of<'a>(recordings: impl Iterator<Item = &'a RecordingQuality>) -> Self {
+        let mut ends = Self::default();
+        for channel in recordings.flat_map(|recording| &recording.channels) {
+            if channel.ends_low() {
+                ends.low.push((channel.name.clone(), channel.lowest));
+            }
+            if channel.ends_high() {
+                ends.high.push((channel.name.clone(), channel.highest));
+            }
+        }
+        ends
+    }
+
+    /// Stretches of rows of `recording` in which a sensor is at its end, ascending; `quality` is that of the recording.
     ///
     /// # Errors
     /// Where the samples cannot be read back.
-    pub fn out_of_range(&self, recording: &Recording) -> io::Result<Vec<Range<usize>>> {
-        let limits = |name: &str| -> Option<Limits> {
-            let channel = self.channel(name)?;
-            let low = if channel.ends_low() { channel.lowest } else { f64::NEG_INFINITY };
-            let high = if channel.ends_high() { channel.highest } else { f64::INFINITY };
-            (low.is_finite() || high.is_finite()).then_some((low, high))
-        };
+    pub fn reached(&self, recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<Range<usize>>> {
+        let has =
+            |ends: &[(String, f64)], name: &str, value: f64| ends.iter().any(|end| end.0 == name && end.1 == value);
         let columns: [(&str, Column); 2] = [("pressure", Chunk::pressure_pa), ("force", Chunk::force_n)];
-        let watched: Vec<_> = columns.iter().filter_map(|(name, column)| Some((limits(name)?, column))).collect();
+        let watched: Vec<(f64, f64, Column)> = columns
+            .iter()
+            .filter_map(|&(name, column)| {
+                let channel = quality.channel(name)?;
+                let low = if has(&self.low, name, channel.lowest) { channel.lowest } else { f64::NEG_INFINITY };
+                let high = if has(&self.high, name, channel.highest) { channel.highest } else { f64::INFINITY };
+                (low.is_finite() || high.is_finite()).then_some((low, high, column))
+            })
+            .collect();
         let mut found: Vec<Range<usize>> = Vec::new();
         if watched.is_empty() {
             return Ok(found);
         }
-        let guard = if self.period_s > 0.0 { (GUARD_S / self.period_s).ceil() as usize } else { 0 };
+        let guard = if quality.period_s > 0.0 { (GUARD_S / quality.period_s).ceil() as usize } else { 0 };
         for chunk in recording.samples.chunks() {
             let chunk = chunk?;
+            let columns: Vec<(f64, f64, &[f64])> =
+                watched.iter().map(|&(low, high, column)| (low, high, column(&chunk))).collect();
             for row in chunk.rows() {
                 let here = row - chunk.first_row();
-                let lost = |((low, high), column): &(Limits, &Column)| {
-                    let value = column(&chunk)[here];
-                    value <= *low || value >= *high
-                };
-                if !watched.iter().any(lost) {
+                if columns.iter().all(|(low, high, column)| column[here] > *low && column[here] < *high) {
                     continue;
                 }
-                let around = row.saturating_sub(guard)..(row + guard + 1).min(self.n_rows);
+                let around = row.saturating_sub(guard)..(row + guard + 1).min(quality.n_rows);
                 match found.last_mut() {
                     Some(last) if last.end >= around.start => last.end = around.end,
                     _ => found.push(around),
@@ -70,6 +96,8 @@ impl RecordingQuality {
         Ok(found)
     }
 }
+
+type Column = fn(&Chunk) -> &[f64];
 
 #[cfg(test)]
 mod tests {
@@ -95,7 +123,8 @@ mod tests {
     }
 
     fn lost(recording: &Recording) -> Vec<Range<usize>> {
-        RecordingQuality::of(recording).unwrap().out_of_range(recording).unwrap()
+        let quality = RecordingQuality::of(recording).unwrap();
+        SensorEnds::of(std::iter::once(&quality)).reached(recording, &quality).unwrap()
     }
 
     #[test]
@@ -105,6 +134,20 @@ mod tests {
         let found = lost(&recording);
         assert_eq!(found.len(), 1);
         assert!(found[0].start.abs_diff(774 - 5) <= 1 && found[0].end.abs_diff(1111 + 6) <= 1, "{found:?}");
+    }
+
+    #[test]
+    fn an_end_that_another_recording_shows_is_one_here() {
+        let (long, mut short) = (clipped(-200.0), clipped(-400.0));
+        // Three samples at the end are no proof by themselves.
+        let quality = |recording: &Recording| RecordingQuality::of(recording).unwrap();
+        let force_n: Vec<f64> =
+            (0..2000).map(|row| if (500..503).contains(&row) { -200.0 } else { (row % 89) as f64 }).collect();
+        let time_s: Vec<f64> = (0..2000).map(|row| f64::from(row) * 0.005).collect();
+        short.samples = Samples::from_columns(&time_s, &vec![2e5; 2000], &vec![0.25; 2000], &force_n);
+        assert!(lost(&short).is_empty());
+        let ends = SensorEnds::of([&quality(&long), &quality(&short)].into_iter());
+        assert_eq!(ends.reached(&short, &quality(&short)).unwrap(), [494..509]);
     }
 
     #[test]
