@@ -88,7 +88,7 @@ static PAGE: Page = Page {
             meaning: "friction at a crawl above that in motion, in units of eq. 9; 0.1 to 1 times f'",
         },
         Symbol { symbol: "v_s", unit: "m/s", meaning: "speed at which 63 % of it are gone; 1 to 20 mm/s" },
-        Symbol { symbol: "n", unit: "1", meaning: "how steeply it falls; 0.5 to 2 in the literature" },
+        Symbol { symbol: "n", unit: "1", meaning: "how steeply it falls: 1 exponentially, 2 as a bell curve" },
         Symbol { symbol: "s", unit: "1", meaning: "direction of motion, kept at standstill" },
         Symbol { symbol: "v", unit: "m/s", meaning: "speed of contraction" },
         Symbol { symbol: "h", unit: "1", meaning: "1 at a crawl, 0 in motion; it follows with the travel" },
