@@ -21,9 +21,7 @@ const STEPS_PER_ROW: usize = 10;
 pub(crate) struct Knees {
     /// The path, straight through where it has a knee.
     pub(crate) rest: Vec<f64>,
-    /// What the knees so far have added at every row: the path is this and the rest.
-    pub(crate) added: Vec<f64>,
-    /// Rate that they have added, averaged over the step before every row, per second.
+    /// Rate that the knees so far have added, averaged over the step before every row, per second.
     pub(crate) rates: Vec<f64>,
     /// Second derivative by the knees over the step before every row, per second squared.
     pub(crate) bends: Vec<f64>,
@@ -41,7 +39,7 @@ impl Knees {
     /// what is left, what stands too close to another and is seen in the second.
     pub(crate) fn of(path: &[f64], windows: [&Window; 2], noise: f64) -> Self {
         let n = path.len();
-        let mut knees = Self { rest: path.to_vec(), added: vec![0.0; n], rates: vec![0.0; n], bends: vec![0.0; n] };
+        let mut knees = Self { rest: path.to_vec(), rates: vec![0.0; n], bends: vec![0.0; n] };
         for window in windows {
             knees.take(&found(&knees.rest, window, noise), window.period_s);
         }
@@ -61,7 +59,6 @@ impl Knees {
             }
             let here = slope * row as f64 + height;
             self.rest[row] -= here;
-            self.added[row] += here;
             self.rates[row] += (here - before) / period_s;
             before = here;
         }

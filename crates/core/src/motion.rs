@@ -101,7 +101,7 @@ pub fn walk(
             let average_m = match &knees {
                 None => average.at(&rows.length_m, at),
                 // A move that has ended does not go on for the rows that it is averaged over.
-                Some(knees) => average.at(&knees.rest, at) + knees.added[at],
+                Some(knees) => average.at(&knees.rest, at) + (rows.length_m[at] - knees.rest[at]),
             };
             let shortened_m = rest_length_m - average_m;
             let contraction_m = contraction.follow(shortened_m);

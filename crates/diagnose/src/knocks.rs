@@ -36,8 +36,8 @@ const LEAST_M_PER_S2: f64 = 0.3;
 const LONGEST_S: f64 = 0.045;
 /// Knocks that are needed.
 const LEAST_KNOCKS: usize = 8;
-/// Share of what is left in the knocks that one mass must explain where it was not fitted.
-const EXPLAINED: f64 = 0.75;
+/// The largest mass may be passed by so much as long as its size is not all that well known.
+const PASSED: f64 = 1.5;
 /// Times the noise floor that it must amount to in them, root mean square.
 const TIMES_FLOOR: f64 = 3.0;
 /// Probability by chance that is still believed.
@@ -50,10 +50,11 @@ const MOUNTS_HZ: [f64; 8] = [12.0, 16.0, 20.0, 25.0, 30.0, 40.0, 60.0, 120.0];
 /// What the residual around knocks may still hold beside them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Residual {
-    /// Friction, damping or a delay that nobody has looked for yet: what goes with the speed is cleared away. A mass is found
-    /// beside it, and its size less well: the speed takes up what the mount has of another shape.
+    /// Friction, damping or a delay that nobody has looked for yet: what goes with the speed is cleared away, and knees are
+    /// averaged over some rows. A mass is found beside it whatever its mount, and its size less well: the speed takes up what
+    /// the mount has of another shape.
     WithSpeed,
-    /// All of that has been looked for without the knocks.
+    /// All of that has been looked for without the knocks. A mass has been found; this is its size.
     Explained,
 }
 
@@ -63,6 +64,14 @@ impl Residual {
         match self {
             Self::WithSpeed => 3,
             Self::Explained => 2,
+        }
+    }
+
+    /// Share of what is left in the knocks that one mass must explain where it was not fitted.
+    fn least_explained(self) -> f64 {
+        match self {
+            Self::WithSpeed => 0.75,
+            Self::Explained => 0.5,
         }
     }
 }
@@ -101,7 +110,7 @@ impl Knocks {
         if explained.terms().len() >= limits.max_effects || limits.excluded.iter().any(|id| id == ID) {
             return Ok(None);
         }
-        let knocks = Self::all(recordings, explained, model.direction, model.geometry.rest_length_m)?;
+        let knocks = Self::all(recordings, explained, model.direction, model.geometry.rest_length_m, residual)?;
         if knocks.len() < LEAST_KNOCKS {
             return Ok(None);
         }
@@ -119,6 +128,7 @@ impl Knocks {
         model: &AugmentedModel,
         thresholds: Thresholds,
         rest_length_m: f64,
+        residual: Residual,
     ) -> Result<Vec<Knock>, IdentifyError> {
         let found: Result<Vec<Vec<Knock>>, IdentifyError> = recordings
             .par_iter()
@@ -138,7 +148,7 @@ impl Knocks {
                     }
                 })
                 .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
-                Ok(lines.iter().flat_map(Line::knocks).collect())
+                Ok(lines.iter().flat_map(|line| line.knocks(residual)).collect())
             })
             .collect();
         Ok(found?.into_iter().flatten().collect())
@@ -165,9 +175,10 @@ impl Knocks {
         let explained = without.mean_square() - with.mean_square();
         // The columns of the effect are the negative acceleration.
         let mass_kg = -Sums::total(&sums).slope();
-        let (lightest_kg, heaviest_kg) = Self::effect().amplitudes()[0].range;
-        let believed = (lightest_kg..=heaviest_kg).contains(&mass_kg)
-            && explained > EXPLAINED * (without.mean_square() - floor_n.powi(2))
+        let (_, heaviest_kg) = Self::effect().amplitudes()[0].range;
+        let passed = if residual == Residual::WithSpeed { PASSED } else { 1.0 };
+        let believed = mass_kg.abs() <= passed * heaviest_kg
+            && explained > residual.least_explained() * (without.mean_square() - floor_n.powi(2))
             && explained > (TIMES_FLOOR * floor_n).powi(2)
             && chance(&without, &with) < CHANCE;
         let mut speeds: Vec<f64> = knocks.iter().map(|knock| knock.fastest_m_per_s).collect();
@@ -214,6 +225,14 @@ impl Knocks {
     #[expect(clippy::expect_used, reason = "the catalogue is fixed")]
     pub fn effect() -> &'static dyn Effect {
         effect(ID).expect("the catalogue has inertia")
+    }
+
+    /// The same with a mass that physics has.
+    #[must_use]
+    pub fn within_range(mut self) -> Self {
+        let (lightest_kg, heaviest_kg) = Self::effect().amplitudes()[0].range;
+        self.mass_kg = self.mass_kg.clamp(lightest_kg, heaviest_kg);
+        self
     }
 
     /// The mass, in kg.
@@ -278,7 +297,7 @@ struct Knock {
     accelerations: Vec<f64>,
     /// Rows before the window.
     before: usize,
-    /// In the window, averaged as the acceleration is: not at all at a knee.
+    /// In the window, averaged as the acceleration is.
     residuals_n: Vec<f64>,
     fastest_m_per_s: f64,
     /// Number of the recording, and the rows of the window in it.
@@ -286,7 +305,7 @@ struct Knock {
 }
 
 impl Line {
-    fn knocks(&self) -> Vec<Knock> {
+    fn knocks(&self, residual: Residual) -> Vec<Knock> {
         let n = self.times_s.len();
         let Some(period_s) = (n > 1).then(|| (self.times_s[n - 1] - self.times_s[0]) / (n - 1) as f64) else {
             return Vec::new();
@@ -295,13 +314,13 @@ impl Line {
         let half = weights.len() / 2 + 1;
         let (before, after) = (8 * half, 4 * half);
         let mut sizes: Vec<f64> = self.accelerations.iter().map(|acceleration| acceleration.abs()).collect();
-        if n <= before + after + half {
+        if n <= before + after + 2 * half {
             return Vec::new();
         }
         let (_, usual, _) = sizes.select_nth_unstable_by(n / 2, f64::total_cmp);
         let threshold = (TIMES_USUAL * 1.4826 * *usual).max(LEAST_M_PER_S2);
         let mut knocks = Vec::new();
-        let mut at = before;
+        let mut at = before + half;
         while at < n - after - half {
             if self.accelerations[at].abs() <= threshold {
                 at += 1;
@@ -318,17 +337,21 @@ impl Line {
                 continue;
             }
             let window = peak - 3 * half..peak + after;
-            let averaged = |row: usize| -> f64 {
-                let rows = &self.residuals_n[row + 1 - half..row + half];
-                rows.iter().zip(&weights).map(|(residual, weight)| residual * weight).sum()
+            let averaged = |values: &[f64], row: usize| -> f64 {
+                values[row + 1 - half..row + half].iter().zip(&weights).map(|(value, weight)| value * weight).sum()
             };
+            // What is no knee is an average already; forces are to be averaged alike.
             let is_knee = self.knees[window.clone()].contains(&true);
-            let residuals_n: Vec<f64> =
-                window.clone().map(|row| if is_knee { self.residuals_n[row] } else { averaged(row) }).collect();
+            let as_it_is = is_knee && residual == Residual::Explained;
+            let choose =
+                |values: &[f64], row: usize, plain: bool| if plain { values[row] } else { averaged(values, row) };
+            let residuals_n: Vec<f64> = window.clone().map(|row| choose(&self.residuals_n, row, as_it_is)).collect();
+            let accelerations =
+                (peak - before..window.end).map(|row| choose(&self.accelerations, row, as_it_is || !is_knee)).collect();
             if residuals_n.iter().all(|residual| residual.is_finite()) {
                 knocks.push(Knock {
                     period_s,
-                    accelerations: self.accelerations[peak - before..window.end].to_vec(),
+                    accelerations,
                     before: before - 3 * half,
                     residuals_n,
                     fastest_m_per_s: came.abs().max(went.abs()),
@@ -466,7 +489,7 @@ mod tests {
 
     fn found(pull: impl Fn(f64, f64) -> f64) -> Option<Knocks> {
         let line = line(pull);
-        let knocks = line.knocks();
+        let knocks = line.knocks(Residual::WithSpeed);
         assert!(knocks.len() >= 40, "{}", knocks.len());
         Knocks::fitted(&knocks, line.times_s.len(), 0.05, Residual::WithSpeed)
     }

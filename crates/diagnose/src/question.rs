@@ -80,7 +80,7 @@ impl<'a> Question<'a> {
         let first_look = found.first;
         let (mut found, sizes) = self.search(&track, &limits, looked)?;
         found.first = first_look;
-        let knocks = self.knocks(&found, &sizes, Residual::Explained)?.unwrap_or(first);
+        let knocks = self.knocks(&found, &sizes, Residual::Explained)?.unwrap_or_else(|| first.within_range());
         let sizes = sizes.with(&knocks);
         Ok(Answer { track, found, knocks: Some(knocks), sizes })
     }
