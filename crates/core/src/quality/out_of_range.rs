@@ -147,7 +147,7 @@ mod tests {
         short.samples = Samples::from_columns(&time_s, &vec![2e5; 2000], &vec![0.25; 2000], &force_n);
         assert!(lost(&short).is_empty());
         let ends = SensorEnds::of([&quality(&long), &quality(&short)].into_iter());
-        assert_eq!(ends.reached(&short, &quality(&short)).unwrap(), [494..509]);
+        assert_eq!(ends.reached(&short, &quality(&short)).unwrap(), std::iter::once(494..509).collect::<Vec<_>>());
     }
 
     #[test]
