@@ -1,17 +1,20 @@
 //! Error on held-out recordings against the noise-free truth, of the base model and of the diagnosed one.
 //!
 //! Both models get pressure and length without noise: what a sensor's noise does on its way through a model is no
-//! error of the model. Samples whose direction is unsettled do not count, as nowhere in the toolchain.
+//! error of the model. Samples whose direction is unsettled do not count, as nowhere in the toolchain, nor do those at the end
+//! of a sensor's range as the recordings show it: what it reads there is no truth.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
 use pam_core::artifact::ModelArtifact;
-use pam_core::recording::{ReadOptions, read_recording};
+use pam_core::quality::SensorEnds;
+use pam_core::recording::{ReadOptions, Recording, read_recording};
 use pam_identification::predict::prepare;
+use pam_identification::prepare::gate;
 use serde::{Deserialize, Serialize};
 
-use crate::folder::{AUGMENTED, MODEL};
+use crate::folder::{AUGMENTED, MODEL, Recordings};
 use crate::programs::Programs;
 
 /// Root mean square errors, in N.
@@ -45,9 +48,18 @@ pub fn errors(programs: &Programs, folder: &Path, logs: &[PathBuf]) -> Result<He
 /// Which samples of each log count.
 fn settled(folder: &Path, logs: &[PathBuf]) -> Result<Vec<Vec<bool>>> {
     let (model, _) = ModelArtifact::read(&folder.join(MODEL))?;
+    let noisy: Result<Vec<Recording>, _> = Recordings::read(folder)?
+        .all()
+        .map(|file| read_recording(&folder.join(file), &ReadOptions::default()))
+        .collect();
+    let noisy = gate(noisy?)?;
+    let ends = SensorEnds::of(noisy.iter().map(|gated| &gated.quality));
     logs.iter()
         .map(|log| {
-            let prepared = prepare(read_recording(log, &ReadOptions::default())?, &model)?;
+            let mut prepared = prepare(read_recording(log, &ReadOptions::default())?, &model)?;
+            for rows in ends.reached(&prepared.recording, &prepared.quality)? {
+                prepared.direction.leave_out(rows);
+            }
             Ok((0..prepared.recording.samples.n_rows()).map(|row| prepared.direction.is_settled(row)).collect())
         })
         .collect()
