@@ -70,6 +70,7 @@ pub fn walk(
         let recorded = channels == Channels::Recorded;
         let knees = recorded
             .then(|| Knees::of(&rows.length_m, [&window, &near], thresholds.length_m / DEVIATIONS_PER_THRESHOLD));
+        let path_m = knees.as_ref().map_or(&rows.length_m, |knees| &knees.rest);
         let mut last: Option<(f64, f64)> = None;
         let noise = average.share_of_noise() * NOISE_PER_THRESHOLD;
         let mut contraction = Onward::new(noise * thresholds.length_m);
@@ -77,18 +78,19 @@ pub fn walk(
         let mut by_pressure_m = 0.0;
         let mut at = 0;
         while at < rows.time_s.len() {
-            let [pressure, length, force] = [&rows.pressure_pa, &rows.length_m, &rows.force_n].map(|channel| {
+            let [pressure, mut length, force] = [&rows.pressure_pa, path_m, &rows.force_n].map(|channel| {
                 let Parabola { value, curvature, .. } = near.parabola(channel, at);
                 Parabola { value, curvature, ..window.parabola(channel, at) }
             });
-            let length = match &knees {
-                None => length,
-                Some(Knees { rest, rates, bends, .. }) => Parabola {
-                    value: length.value,
-                    slope: window.parabola(rest, at).slope + rates[at],
-                    curvature: near.parabola(rest, at).curvature + bends[at],
-                },
-            };
+            // A move that has ended does not go on for the rows that it is averaged over.
+            let mut average_m = average.at(path_m, at);
+            if let Some(Knees { rest, rates, bends }) = &knees {
+                let added_m = rows.length_m[at] - rest[at];
+                average_m += added_m;
+                length.value += added_m;
+                length.slope += rates[at];
+                length.curvature += bends[at];
+            }
             let row = segment.start + at;
             let average_pa = average.at(&rows.pressure_pa, at);
             let (step_s, pressure_step_pa) =
@@ -98,11 +100,6 @@ pub fn walk(
                 by_pressure_m += SLIDE_M_PER_PA * pressure_step_pa;
             }
             last = Some((rows.time_s[at], average_pa));
-            let average_m = match &knees {
-                None => average.at(&rows.length_m, at),
-                // A move that has ended does not go on for the rows that it is averaged over.
-                Some(knees) => average.at(&knees.rest, at) + (rows.length_m[at] - knees.rest[at]),
-            };
             let shortened_m = rest_length_m - average_m;
             let contraction_m = contraction.follow(shortened_m);
             let slide_m = slide.follow(shortened_m + by_pressure_m);
