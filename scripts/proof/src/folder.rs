@@ -21,6 +21,14 @@ pub const AUGMENTED: &str = "augmented.json";
 /// Which recording is which.
 const RECORDINGS: &str = "recordings.json";
 
+/// Makes a folder for results, and those above it, where there is none.
+///
+/// # Errors
+/// Where it cannot be made.
+pub fn make(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))
+}
+
 /// Which recordings of a folder are fitted and which are held out; no truth.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

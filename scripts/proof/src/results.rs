@@ -110,8 +110,11 @@ impl Results {
         for dropped in &self.dropped {
             let _ = writeln!(text, "Given up: {dropped}");
         }
-        let _ = writeln!(text, "One thread each: pam-identify {}.", times(|score| score.identify_s));
-        let _ = writeln!(text, "pam-diagnose {}.", times(|score| score.diagnose_s));
+        // Cases that were generated before come with their models.
+        if self.scores.iter().any(|score| score.identify_s > 0.0) {
+            let _ = writeln!(text, "One thread each: pam-identify {}.", times(|score| score.identify_s));
+        }
+        let _ = writeln!(text, "One thread each: pam-diagnose {}.", times(|score| score.diagnose_s));
         text
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::Parser;
 use pam_cli::{Console, RunArgs, Verdict};
 use pam_proof::programs::Programs;
@@ -55,7 +55,7 @@ fn run(args: &Args) -> Result<Verdict> {
     ensure!(args.cases > 0, "--cases 0 proves nothing");
     // Before an hour of work, not behind it.
     if let Some(folder) = &args.record {
-        std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+        pam_proof::folder::make(folder)?;
     }
     if let Some(folder) = &args.generate_only {
         let sealed = draw(args, folder, &console)?;

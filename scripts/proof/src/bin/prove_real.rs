@@ -33,7 +33,7 @@ fn run(args: &Args) -> Result<Verdict> {
     let bin = own.parent().context("the running program has no folder")?;
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     if let Some(folder) = &args.record {
-        std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+        pam_proof::folder::make(folder)?;
     }
     let mut results = Vec::new();
     for muscle in MUSCLES {
