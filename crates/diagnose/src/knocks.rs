@@ -3,8 +3,8 @@
 //! They last some tens of milliseconds, much of that where the direction is not settled: the grid of a [`crate::track`]
 //! smooths them over or does not count them. So they are looked for in the samples as recorded, in what the model leaves
 //! there. Around each knock, the residual is cleared of a level, a slope and, until something explains that, what goes with
-//! the speed (friction, damping, delays); what remains must be one mass times the acceleration behind one mount ([`pam_core::effects::Mount`]), the same in
-//! all knocks.
+//! the speed (friction, damping, delays); what remains must be one mass times the acceleration behind one mount
+//! ([`pam_core::effects::Mount`]), the same in all knocks.
 
 use std::ops::Range;
 

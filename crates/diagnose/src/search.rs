@@ -270,7 +270,8 @@ const KEPT: f64 = 0.4;
 const STANDS_FOR_ITSELF: f64 = 0.5;
 
 /// Lets go of effects that only stand in for something without a name: where structure over one coordinate is left, an effect
-/// that gains little beside a free function of that coordinate was the nearest name, and the wrong one.
+/// that gains less than that structure holds, or little beside a free function of that coordinate, was the nearest name, and
+/// the wrong one.
 fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], whole: f64) -> Judged {
     let mut best = best;
     loop {

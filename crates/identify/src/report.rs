@@ -193,8 +193,8 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
         .collect();
     if let Some((path, share)) = doubtful.iter().copied().max_by(|left, right| left.1.total_cmp(&right.1)) {
         warnings.push(format!(
-            "{path}{}: up to {:.0} % of the samples lie around reversals or beyond a sensor's range and are not counted; where a gauge rings at every \
-             pulse of the valve, raise --pressure-play-kpa above the ringing",
+            "{path}{}: up to {:.0} % of the samples lie around reversals or beyond a sensor's range and are not counted; \
+             where a gauge rings at every pulse of the valve, raise --pressure-play-kpa above the ringing",
             and_others(doubtful.len() - 1),
             100.0 * share
         ));
