@@ -34,7 +34,7 @@ impl Effect for ThermalSoftening {
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "softening_per_kilowatt", unit: "1", range: (0.0, 5.0) }]
+        &[Amplitude { name: "softening_per_kilowatt", unit: "1", range: (0.0, 40.0) }]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
