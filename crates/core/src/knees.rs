@@ -199,7 +199,7 @@ mod tests {
         let bent: Vec<usize> = (0..1000).filter(|&row| knees.bend(row) != 0.0).collect();
         assert!(bent.len() <= 4 && bent.iter().all(|row| row.abs_diff(200) <= 2 || row.abs_diff(401) <= 2), "{bent:?}");
         // In time, and in size.
-        let moment = |rows: std::ops::Range<usize>| rows.map(|row| knees.bend(row) * PERIOD_S).collect::<Vec<_>>();
+        let moment = |rows: Range<usize>| rows.map(|row| knees.bend(row) * PERIOD_S).collect::<Vec<_>>();
         let (start, stop) = (moment(150..250), moment(350..450));
         let size = |changes: &[f64]| changes.iter().sum::<f64>();
         let middle_s = |changes: &[f64], first: f64| {
@@ -219,7 +219,7 @@ mod tests {
     #[test]
     fn a_short_move_has_both_its_knees() {
         let (knees, _) = noisy(|t| 0.5 * (t.clamp(1.0012, 1.0431) - 1.0));
-        let change = |rows: std::ops::Range<usize>| rows.map(|row| knees.bend(row) * PERIOD_S).sum::<f64>();
+        let change = |rows: Range<usize>| rows.map(|row| knees.bend(row) * PERIOD_S).sum::<f64>();
         assert!((change(198..203) - 0.5).abs() < 0.02 && (change(206..211) + 0.5).abs() < 0.02);
     }
 

@@ -7,7 +7,7 @@ use std::io;
 
 use crate::direction::{Direction, Thresholds};
 use crate::effects::Moment;
-use crate::effects::moment::SLIDE_M_PER_PA;
+use crate::force::ForceModel;
 use crate::knees::Knees;
 use crate::recording::Recording;
 use crate::smoothing::{Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Parabola, Window};
@@ -41,8 +41,8 @@ pub enum Channels {
     Smooth,
 }
 
-/// Walks over every `stride`-th row of `recording`, in order, a segment at a time. `index` is the number of the recording,
-/// `rest_length_m` that of the muscle.
+/// Walks over every `stride`-th row of `recording`, in order, a segment at a time. `index` is the number of the recording;
+/// `base` knows the muscle.
 ///
 /// # Errors
 /// Where the samples cannot be read back.
@@ -51,12 +51,14 @@ pub fn walk(
     recording: &Recording,
     direction: &Direction,
     thresholds: Thresholds,
-    rest_length_m: f64,
+    base: &ForceModel,
     index: usize,
     stride: usize,
     channels: Channels,
     visit: &mut dyn FnMut(Instant),
 ) -> io::Result<()> {
+    let rest_length_m = base.muscle().rest_length_m;
+    let rest_slide_m_per_pa = base.slide_m_per_pa(rest_length_m);
     let mut first_s = None;
     for segment in &recording.segments {
         let rows = Rows::read(recording, segment.clone())?;
@@ -77,7 +79,8 @@ pub fn walk(
         let noise = average.share_of_noise() * NOISE_PER_THRESHOLD;
         let within_s = window.width_s();
         let mut contraction = Onward::new(noise * thresholds.length_m, within_s);
-        let mut slide = Onward::new(noise * (thresholds.length_m + SLIDE_M_PER_PA * thresholds.pressure_pa), within_s);
+        let mut slide =
+            Onward::new(noise * (thresholds.length_m + rest_slide_m_per_pa * thresholds.pressure_pa), within_s);
         let mut by_pressure_m = 0.0;
         let mut at = 0;
         while at < rows.time_s.len() {
@@ -92,13 +95,14 @@ pub fn walk(
             let (average_m, average_pa) = (lengths.average(&average, at), pressures.average(&average, at));
             let (step_s, pressure_step_pa) =
                 last.map_or((0.0, 0.0), |(time_s, pressure_pa)| (rows.time_s[at] - time_s, average_pa - pressure_pa));
+            let slide_m_per_pa = base.slide_m_per_pa(average_m);
             let resting = still.at(at, sharp_length.slope);
             if resting {
-                by_pressure_m += SLIDE_M_PER_PA * pressure_step_pa;
+                by_pressure_m += slide_m_per_pa * pressure_step_pa;
             }
             last = Some((rows.time_s[at], average_pa));
             let shortened_m = rest_length_m - average_m;
-            let slide_speed_m_per_s = if resting { SLIDE_M_PER_PA * sharp_pressure.slope } else { -sharp_length.slope };
+            let slide_speed_m_per_s = if resting { slide_m_per_pa * sharp_pressure.slope } else { -sharp_length.slope };
             let contraction_m = contraction.follow(shortened_m, -sharp_length.slope);
             let slide_m = slide.follow(shortened_m + by_pressure_m, slide_speed_m_per_s);
             visit(Instant {
@@ -255,5 +259,68 @@ impl<'a> Still<'a> {
         let lengths = self.lengths.get(from..to).unwrap_or_default();
         let (low, high) = lengths.iter().fold((f64::INFINITY, f64::NEG_INFINITY), range);
         high - low <= self.threshold_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::direction::Driver;
+    use crate::force::{BaseParameters, Form};
+    use crate::muscle::tests::nominal;
+    use crate::recording::{ReadOptions, read_recording};
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+    use std::fmt::Write as _;
+
+    const THRESHOLDS: Thresholds = Thresholds { length_m: 1.5e-4, pressure_pa: 2.5e3 };
+
+    fn base() -> ForceModel {
+        ForceModel::new(&nominal(), 3e9, Form::Corrected, BaseParameters { theta: [0.0; 8] })
+    }
+
+    /// A noisy path of (pressure, length) over five seconds.
+    fn walked(channels: Channels, stride: usize, at: impl Fn(f64) -> (f64, f64)) -> Vec<Instant> {
+        let normal = Normal::new(0.0, 1.0).unwrap();
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(5);
+        let mut noise = |deviation: f64| deviation * normal.sample(&mut generator);
+        let mut csv = String::from("time_s,pressure_kPa,length_mm,force_N\n");
+        for row in 0..1000 {
+            let time_s = f64::from(row) * 0.005;
+            let (pressure_pa, length_m) = at(time_s);
+            let (pressure_kpa, length_mm) = (pressure_pa * 1e-3 + noise(0.5), length_m * 1e3 + noise(0.03));
+            writeln!(csv, "{time_s:.3},{pressure_kpa:.3},{length_mm:.4},{:.2}", 100.0 + noise(1.0)).unwrap();
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.csv");
+        std::fs::write(&path, csv).unwrap();
+        let recording = read_recording(&path, &ReadOptions::default()).unwrap();
+        let direction = Direction::of(&recording, THRESHOLDS, Driver::Motion).unwrap();
+        let mut instants = Vec::new();
+        walk(&recording, &direction, THRESHOLDS, &base(), 0, stride, channels, &mut |instant| instants.push(instant))
+            .unwrap();
+        instants
+    }
+
+    #[test]
+    fn a_slide_that_stops_does_not_crawl_on() {
+        // A shortening by 50 mm/s that stops at 2 s.
+        for (channels, stride) in [(Channels::Recorded, 1), (Channels::Smooth, 4)] {
+            let instants = walked(channels, stride, |t| (3e5, 0.27 - 0.05 * (t - 1.0).clamp(0.0, 1.0)));
+            let moment = |time_s: f64| instants[(time_s / 0.005) as usize / stride].moment;
+            assert!((moment(1.96).slide_speed_m_per_s - 0.05).abs() < 3e-3);
+            assert!(moment(2.02).slide_speed_m_per_s.abs() < 3e-3);
+            let crept_m = moment(4.9).slide_m - moment(2.02).slide_m;
+            assert!(crept_m.abs() < 2e-5, "{crept_m}");
+        }
+    }
+
+    #[test]
+    fn a_held_braid_slides_with_the_pressure() {
+        let instants = walked(Channels::Recorded, 1, |t| (1e5 + 2e5 * (t - 2.0).clamp(0.0, 1.0), 0.25));
+        let moment = |time_s: f64| instants[(time_s / 0.005) as usize].moment;
+        let slid_m = moment(4.0).slide_m - moment(1.0).slide_m;
+        assert!((slid_m - 2e5 * base().slide_m_per_pa(0.25)).abs() < 5e-5, "{slid_m}");
+        assert!((moment(2.5).slide_speed_m_per_s - slid_m).abs() < 0.1 * slid_m);
     }
 }

@@ -72,8 +72,7 @@ struct Last {
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
         let speed_m_per_s = now.slide_speed_m_per_s.abs();
-        let crawl =
-            |speed_m_per_s: f64| (-(speed_m_per_s / self.stribeck_speed_m_per_s).powf(self.exponent)).exp();
+        let crawl = |speed_m_per_s: f64| (-(speed_m_per_s / self.stribeck_speed_m_per_s).powf(self.exponent)).exp();
         let level = match &self.last {
             Some(last) if last.recording == now.recording => {
                 // In a step in which it starts or stops, the way is that of its motion.
@@ -160,6 +159,9 @@ mod tests {
         assert!(at(0.0, 0.0) < 1e-12);
         assert!((at(RENEWAL_M, 0.0) - (1.0 - (-1.0_f64).exp())).abs() < 1e-9);
         assert!(at(30.0 * RENEWAL_M, 0.0) > 1.0 - 1e-9);
+        // The way of a step in which it stops is that of its motion.
+        assert!(at(60.0 * RENEWAL_M, 1.0) < 1e-12);
+        assert!(at(90.0 * RENEWAL_M, 0.0) < 1e-12);
     }
 
     #[test]
