@@ -80,8 +80,8 @@ static PAGE: Page = Page {
         Symbol {
             symbol: "d",
             unit: "1",
-            meaning: "softening, in units of f, that lasting work at P_ref ends at: 0.02 to 0.2 for each 1e-3 of f', as \
-                      P_ref is 1 W of heat where f' is 1e-3; more in thin muscles, which lose less heat",
+            meaning: "softening, in units of f, that lasting work at P_ref (1 W of heat where f' is 1e-3) ends at; 0.02 to \
+                      0.2 for each 1e-3 of f'",
         },
         Symbol { symbol: "τ", unit: "s", meaning: "time constant of warming; 200 to 900 s, less for thin muscles" },
         Symbol {
