@@ -17,7 +17,7 @@ use crate::knocks::Knocks;
 /// Time between instants, in s, as long as there are fewer than [`MOST_INSTANTS`].
 const PERIOD_S: f64 = 0.02;
 /// Instants of all recordings together, at most; longer recordings are thinned further.
-const MOST_INSTANTS: usize = 300_000;
+const MOST_INSTANTS: usize = 160_000;
 /// Blocks that the recordings together are cut into, about.
 const BLOCKS: usize = 32;
 
