@@ -218,7 +218,7 @@ fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
 }
 
 /// Rounds in which details and the other shapes settle with one another.
-const DETAIL_SWEEPS: usize = 4;
+const DETAIL_SWEEPS: usize = 10;
 
 /// `state` with the best details of its effects; none where no effect has any.
 fn detailed(setting: &Setting<'_>, state: &State) -> Option<State> {
