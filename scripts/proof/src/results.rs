@@ -11,7 +11,7 @@ use crate::case::{CATALOGUE, Kind, NAMELESS};
 use crate::confusion::Confusion;
 use crate::criteria::{Criterion, criteria};
 use crate::misses;
-use crate::score::Score;
+use crate::score::{Outcome, Score};
 use crate::statistics::quantile;
 
 /// All that came of a proof.
@@ -40,6 +40,18 @@ impl Results {
     /// Whether every target is reached.
     pub fn passes(&self) -> bool {
         criteria(&self.scores).iter().all(|criterion| criterion.passes() != Some(false))
+    }
+
+    /// In how many cases a program failed, and what the first one said; none where every program did its work. They are
+    /// misses as well, but a proof of programs that do not run proves nothing.
+    pub fn failures(&self) -> Option<String> {
+        let said = |score: &Score| match &score.outcome {
+            Outcome::Failed(said) => Some(format!("{}: {said}", score.case.name)),
+            Outcome::Diagnosed(_) => None,
+        };
+        let failed: Vec<String> = self.scores.iter().filter_map(said).collect();
+        let first = failed.first()?;
+        Some(format!("a program failed in {} of {} cases, first in {first}", failed.len(), self.scores.len()))
     }
 
     /// A row per concealed effect: how its singles fared.

@@ -93,8 +93,7 @@ impl Sealed {
         })
     }
 
-    /// Diagnoses every case that has a folder; records, identifies and clears away the recordings where `fresh`. Then
-    /// opens the seal and scores.
+    /// Diagnoses every case that has a folder; records and identifies before where `fresh`. Then opens the seal and scores.
     ///
     /// # Errors
     /// Where a file cannot be read or the truth is not the one that was sealed.
@@ -129,13 +128,8 @@ fn diagnose(case: &Case, folder: &Path, programs: &Programs, fresh: bool) -> Res
         return Ok(Took { identify_s: 0.0, diagnose_s: programs.diagnose(folder, &recordings)? });
     }
     let recordings = folder::write(case, folder)?;
-    let took = programs.identify(folder, &recordings).and_then(|identify_s| {
-        programs.diagnose(folder, &recordings).map(|diagnose_s| Took { identify_s, diagnose_s })
-    });
-    for file in recordings.all() {
-        std::fs::remove_file(folder.join(file))?;
-    }
-    took
+    let identify_s = programs.identify(folder, &recordings)?;
+    Ok(Took { identify_s, diagnose_s: programs.diagnose(folder, &recordings)? })
 }
 
 /// Scores a case. A program that failed is a miss of the case, not of the proof.

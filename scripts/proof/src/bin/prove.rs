@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Result, ensure};
+use anyhow::{Result, bail, ensure};
 use clap::Parser;
 use pam_cli::{Console, RunArgs, Verdict};
 use pam_proof::programs::Programs;
@@ -72,6 +72,9 @@ fn run(args: &Args) -> Result<Verdict> {
     pam_cli::write_file("-", results.to_terminal())?;
     if let Some(folder) = &args.record {
         results.record(folder)?;
+    }
+    if let Some(failures) = results.failures() {
+        bail!("{failures}");
     }
     Ok(if results.passes() { Verdict::Accepted } else { Verdict::Rejected })
 }
