@@ -19,7 +19,7 @@ use pam_proof::run::Sealed;
     after_help = "Examples:\n  \
                   prove --cases 24 --seed 7\n  \
                   prove --cases 44 --seed 7 --generate-only out/cases; prove --score-only out/cases\n\n\
-                  Exit codes: 0 every target reached, 1 a target missed, 2 input or usage."
+                  Exit codes: 0 every target reached, 1 a target missed, 2 input, usage or a program that failed."
 )]
 struct Args {
     /// Cases to draw.
