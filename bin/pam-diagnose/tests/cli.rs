@@ -141,9 +141,7 @@ impl Desk {
 fn predicted_rmse_n(desk: &Desk, model: &ModelArtifact) -> f64 {
     let prepared = pam_identification::predict::prepare(desk.recording("multisine.csv"), model).unwrap();
     let augmented = model.augmented_model().without_events();
-    let (direction, rest_length_m) = (model.direction, model.geometry.rest_length_m);
-    let found =
-        pam_identification::evaluate::evaluate_augmented(&[prepared], &augmented, direction, rest_length_m).unwrap();
+    let found = pam_identification::evaluate::evaluate_augmented(&[prepared], &augmented, model.direction).unwrap();
     found.together.unwrap().rmse_n
 }
 

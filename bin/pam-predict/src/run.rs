@@ -37,11 +37,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     if let Some(mut out) = out {
         let path = out.path().display().to_string();
         // Only effects remember, and only with them the forces are computed beforehand.
-        let augmented_n = if model.is_plain() {
-            None
-        } else {
-            Some(augmented_forces_n(&prepared, &model, artifact.direction, artifact.geometry.rest_length_m)?)
-        };
+        let augmented_n =
+            if model.is_plain() { None } else { Some(augmented_forces_n(&prepared, &model, artifact.direction)?) };
         write(&mut out, &prepared, &model, augmented_n.as_deref()).with_context(|| format!("cannot write {path}"))?;
         out.finish()?;
         if path != "-" {
@@ -51,12 +48,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     if !prepared.recording.samples.has_force() {
         return Ok(Verdict::Accepted);
     }
-    let evaluation = evaluate_augmented(
-        std::slice::from_ref(&prepared),
-        &model,
-        artifact.direction,
-        artifact.geometry.rest_length_m,
-    )?;
+    let evaluation = evaluate_augmented(std::slice::from_ref(&prepared), &model, artifact.direction)?;
     let statistics = evaluation.each[0];
     console.note(format!(
         "RMSE {:.3} N, largest {:.1} N, fit {:.2} % over {} samples ({} at reversals or beyond a sensor's range left out)",

@@ -5,6 +5,8 @@
 //! whether two straight lines that meet describe it down to the noise of the sensor. If they do, the path is taken as smooth
 //! but for that knee: rates come from what is left of the path without its knees, which lend their own.
 
+use std::ops::Range;
+
 use crate::smoothing::Window;
 
 /// A curvature above so many of its own deviations is a bend.
@@ -16,15 +18,11 @@ const CLEARLY: f64 = 9.0;
 /// Steps of the search for the instant, per row.
 const STEPS_PER_ROW: usize = 10;
 
-/// A path without its knees, and what they change.
+/// The knees of a path and the bent line that they make: nothing before the first, its slope added behind each.
 #[derive(Debug, Default)]
 pub(crate) struct Knees {
-    /// The path, straight through where it has a knee.
-    pub(crate) rest: Vec<f64>,
-    /// Rate that the knees so far have added, averaged over the step before every row, per second.
-    pub(crate) rates: Vec<f64>,
-    /// Second derivative by the knees over the step before every row, per second squared.
-    pub(crate) bends: Vec<f64>,
+    bent: Vec<Bent>,
+    period_s: f64,
 }
 
 /// Where the rate changes, in rows, and by how much per row.
@@ -34,42 +32,74 @@ struct Knee {
     change: f64,
 }
 
+/// The line from a knee to the next, `slope row + height`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bent {
+    knee: Knee,
+    slope: f64,
+    height: f64,
+}
+
 impl Knees {
-    /// Those of `path`, whose white noise has the deviation `noise`: first what is seen in the first of `windows`, then, in
-    /// what is left, what stands too close to another and is seen in the second.
-    pub(crate) fn of(path: &[f64], windows: [&Window; 2], noise: f64) -> Self {
-        let n = path.len();
-        let mut knees = Self { rest: path.to_vec(), rates: vec![0.0; n], bends: vec![0.0; n] };
+    /// Takes the knees from `path`, whose white noise has the deviation `noise`, so that it goes straight on at each: first
+    /// what is seen in the first of `windows`, then, in what is left, what stands too close to another and is seen in the
+    /// second.
+    pub(crate) fn take_from(path: &mut [f64], windows: [&Window; 2], noise: f64) -> Self {
+        let mut all: Vec<Knee> = Vec::new();
         for window in windows {
-            knees.take(&found(&knees.rest, window, noise), window.period_s);
+            let found = Self::new(found(path, window, noise), window.period_s);
+            path.iter_mut().enumerate().for_each(|(row, value)| *value -= found.added(row));
+            all.extend(found.bent.iter().map(|bent| bent.knee));
         }
-        knees
+        all.sort_by(|left, right| left.at.total_cmp(&right.at));
+        Self::new(all, windows[0].period_s)
     }
 
-    /// Takes `found` from the rest.
-    fn take(&mut self, found: &[Knee], period_s: f64) {
-        let last = self.rest.len().saturating_sub(1);
-        let mut ahead = found.iter().peekable();
-        // The line that the knees so far have added, and where it has come to.
-        let (mut slope, mut height, mut before) = (0.0, 0.0, 0.0);
-        for row in 0..self.rest.len() {
-            while let Some(knee) = ahead.next_if(|knee| knee.at <= row as f64) {
-                slope += knee.change;
-                height -= knee.change * knee.at;
-            }
-            let here = slope * row as f64 + height;
-            self.rest[row] -= here;
-            self.rates[row] += (here - before) / period_s;
-            before = here;
+    /// `knees` ascend.
+    fn new(knees: Vec<Knee>, period_s: f64) -> Self {
+        let (mut slope, mut height) = (0.0, 0.0);
+        let bent = knees.into_iter().map(|knee| {
+            slope += knee.change;
+            height -= knee.change * knee.at;
+            Bent { knee, slope, height }
+        });
+        Self { bent: bent.collect(), period_s }
+    }
+
+    /// What the knees so far have added to the path at `row`.
+    pub(crate) fn added(&self, row: usize) -> f64 {
+        let row = row as f64;
+        match self.bent.partition_point(|bent| bent.knee.at <= row) {
+            0 => 0.0,
+            behind => self.bent[behind - 1].slope * row + self.bent[behind - 1].height,
         }
-        for knee in found {
-            // Shared by two steps so that it acts, on average, when it does.
-            let middle = knee.at + 0.5;
-            let (first, share) = (middle.floor(), middle - middle.floor());
-            for (row, share) in [(first as usize, 1.0 - share), (first as usize + 1, share)] {
-                self.bends[row.min(last)] += share * knee.change / (period_s * period_s);
-            }
-        }
+    }
+
+    /// Whether one lies within `rows` or in the step before them.
+    pub(crate) fn any_within(&self, rows: &Range<usize>) -> bool {
+        let first = self.bent.partition_point(|bent| bent.knee.at + 2.0 <= rows.start as f64);
+        self.bent.get(first).is_some_and(|bent| bent.knee.at <= rows.end as f64)
+    }
+
+    /// The rows that no knee parts from `row`: the first behind the last knee, and the last before the next.
+    pub(crate) fn around(&self, row: usize) -> (usize, usize) {
+        let next = self.bent.partition_point(|bent| bent.knee.at <= row as f64);
+        let first = next.checked_sub(1).map_or(0, |last| self.bent[last].knee.at.ceil() as usize);
+        (first, self.bent.get(next).map_or(usize::MAX, |bent| bent.knee.at as usize))
+    }
+
+    /// Rate that they have added, averaged over the step before `row`, per second.
+    pub(crate) fn rate(&self, row: usize) -> f64 {
+        row.checked_sub(1).map_or(0.0, |before| (self.added(row) - self.added(before)) / self.period_s)
+    }
+
+    /// Second derivative by the knees over the step before `row`, per second squared; shared by two steps so that it acts,
+    /// on average, when it does.
+    pub(crate) fn bend(&self, row: usize) -> f64 {
+        let row = row as f64;
+        let first = self.bent.partition_point(|bent| bent.knee.at <= row - 1.5);
+        let near = self.bent[first..].iter().map(|bent| bent.knee).take_while(|knee| knee.at < row + 0.5);
+        near.map(|knee| (1.0 - (knee.at + 0.5 - row).abs()) * knee.change).sum::<f64>() / self.period_s.powi(2)
     }
 }
 
@@ -152,22 +182,24 @@ mod tests {
     const PERIOD_S: f64 = 0.005;
     const NOISE_M: f64 = 30e-6;
 
-    fn noisy(place_m: impl Fn(f64) -> f64) -> Knees {
+    /// The knees of a noisy path, and what is left of it.
+    fn noisy(place_m: impl Fn(f64) -> f64) -> (Knees, Vec<f64>) {
         let normal = Normal::new(0.0, NOISE_M).unwrap();
         let mut generator = rand_pcg::Pcg64::seed_from_u64(2);
         let time_s: Vec<f64> = (0..1000).map(|row| f64::from(row) * PERIOD_S).collect();
-        let path: Vec<f64> = time_s.iter().map(|&t| place_m(t) + normal.sample(&mut generator)).collect();
+        let mut path: Vec<f64> = time_s.iter().map(|&t| place_m(t) + normal.sample(&mut generator)).collect();
         let windows = [HALF_WINDOW_S, HALF_VALUE_WINDOW_S].map(|half_s| Window::over(&time_s, half_s));
-        Knees::of(&path, [&windows[0], &windows[1]], NOISE_M)
+        let knees = Knees::take_from(&mut path, [&windows[0], &windows[1]], NOISE_M);
+        (knees, path)
     }
 
     #[test]
     fn a_start_and_a_stop_between_rows_are_found() {
-        let knees = noisy(|t| 0.05 * (t.clamp(1.0012, 2.0031) - 1.0));
-        let bent: Vec<usize> = (0..1000).filter(|&row| knees.bends[row] != 0.0).collect();
+        let (knees, path) = noisy(|t| 0.05 * (t.clamp(1.0012, 2.0031) - 1.0));
+        let bent: Vec<usize> = (0..1000).filter(|&row| knees.bend(row) != 0.0).collect();
         assert!(bent.len() <= 4 && bent.iter().all(|row| row.abs_diff(200) <= 2 || row.abs_diff(401) <= 2), "{bent:?}");
         // In time, and in size.
-        let moment = |rows: std::ops::Range<usize>| rows.map(|row| knees.bends[row] * PERIOD_S).collect::<Vec<_>>();
+        let moment = |rows: Range<usize>| rows.map(|row| knees.bend(row) * PERIOD_S).collect::<Vec<_>>();
         let (start, stop) = (moment(150..250), moment(350..450));
         let size = |changes: &[f64]| changes.iter().sum::<f64>();
         let middle_s = |changes: &[f64], first: f64| {
@@ -179,22 +211,22 @@ mod tests {
         assert!((middle_s(&stop, 350.0) - 2.0031).abs() < 1e-3, "{}", middle_s(&stop, 350.0));
         // What is left and what the knees add make the speed.
         for (row, speed) in [(50, 0.0), (210, 0.05), (380, 0.05), (405, 0.0), (900, 0.0)] {
-            let rest = (knees.rest[row + 15] - knees.rest[row]) / (15.0 * PERIOD_S);
-            assert!((rest + knees.rates[row] - speed).abs() < 2e-3, "{row}");
+            let rest = (path[row + 15] - path[row]) / (15.0 * PERIOD_S);
+            assert!((rest + knees.rate(row) - speed).abs() < 2e-3, "{row}");
         }
     }
 
     #[test]
     fn a_short_move_has_both_its_knees() {
-        let knees = noisy(|t| 0.5 * (t.clamp(1.0012, 1.0431) - 1.0));
-        let change = |rows: std::ops::Range<usize>| rows.map(|row| knees.bends[row] * PERIOD_S).sum::<f64>();
+        let (knees, _) = noisy(|t| 0.5 * (t.clamp(1.0012, 1.0431) - 1.0));
+        let change = |rows: Range<usize>| rows.map(|row| knees.bend(row) * PERIOD_S).sum::<f64>();
         assert!((change(198..203) - 0.5).abs() < 0.02 && (change(206..211) + 0.5).abs() < 0.02);
     }
 
     #[test]
     fn a_bend_that_lasts_and_noise_have_no_knees() {
-        for knees in [noisy(|t| 0.005 * (12.0 * t).sin()), noisy(|_| 0.0), noisy(|t| 0.03 * (t - 2.5).powi(2))] {
-            assert!(knees.bends.iter().all(|bend| *bend == 0.0));
+        for (knees, _) in [noisy(|t| 0.005 * (12.0 * t).sin()), noisy(|_| 0.0), noisy(|t| 0.03 * (t - 2.5).powi(2))] {
+            assert!(knees.bent.is_empty());
         }
     }
 }

@@ -5,6 +5,8 @@
 //! shifts none against the other. What slides and remembers its path gets an average with positive weights instead, which
 //! never overshoots, and turns back only by more than the noise of that average.
 
+use std::ops::Range;
+
 /// Half of the window of the parabola that rates come from, in s; at least four samples and at most fifty to either side.
 pub const HALF_WINDOW_S: f64 = 0.04;
 /// The same for the values themselves, which need less smoothing than their rates, and for the acceleration, which lasts
@@ -29,7 +31,6 @@ pub(crate) struct Window {
     /// Rows to either side.
     pub(crate) half: usize,
     pub(crate) period_s: f64,
-    n_rows: usize,
     /// `Σ u²` and the determinant terms of the normal equations over `u = -half..=half`.
     sum2: f64,
     sum4: f64,
@@ -37,13 +38,23 @@ pub(crate) struct Window {
 
 impl Window {
     pub(crate) fn over(time_s: &[f64], half_s: f64) -> Self {
-        let n_rows = time_s.len();
         let period_s = period_s(time_s);
         let half = half_rows(half_s, period_s);
         let h = half as f64;
         let sum2 = h * (h + 1.0) * (2.0 * h + 1.0) / 3.0;
         let sum4 = sum2 * (3.0 * h * h + 3.0 * h - 1.0) / 5.0;
-        Self { half, period_s, n_rows, sum2, sum4 }
+        Self { half, period_s, sum2, sum4 }
+    }
+
+    /// The rows of `n_rows` that the parabola at row `at` is fitted to.
+    pub(crate) fn around(&self, at: usize, n_rows: usize) -> Range<usize> {
+        let center = at.min((n_rows - 1).saturating_sub(self.half)).max(self.half);
+        center - self.half..(center + self.half + 1).min(n_rows)
+    }
+
+    /// Time that it spans, in s.
+    pub(crate) fn width_s(&self) -> f64 {
+        2.0 * self.half as f64 * self.period_s
     }
 
     /// Deviation of a curvature over that of the white noise of the rows, per second squared.
@@ -58,10 +69,10 @@ impl Window {
             return Parabola::default();
         }
         let width = 2 * self.half + 1;
-        if self.n_rows < width {
+        if channel.len() < width {
             return Parabola { value: channel[at], ..Parabola::default() };
         }
-        let center = at.clamp(self.half, self.n_rows - 1 - self.half);
+        let center = at.clamp(self.half, channel.len() - 1 - self.half);
         let origin = channel[center];
         let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
         for (offset, value) in channel[center - self.half..=center + self.half].iter().enumerate() {
@@ -167,26 +178,29 @@ impl Average {
     }
 }
 
-/// What follows a channel but does not turn back for its noise: to what remembers its path, noise at rest would be a way to
-/// and fro. It has no lag while it goes on one way.
+/// What follows a channel but not its noise: to what remembers its path, noise at rest would be a way to and fro. It has no
+/// lag while it goes on one way.
 pub(crate) struct Onward {
-    /// A way back that is none.
+    /// A way that is none.
     noise: f64,
+    /// Time in which what moves passes it, in s.
+    within_s: f64,
     position: f64,
     /// ±1; 0 before the first move.
     way: f64,
 }
 
 impl Onward {
-    pub(crate) fn new(noise: f64) -> Self {
-        Self { noise, position: f64::NAN, way: 0.0 }
+    pub(crate) fn new(noise: f64, within_s: f64) -> Self {
+        Self { noise, within_s, position: f64::NAN, way: 0.0 }
     }
 
-    pub(crate) fn follow(&mut self, to: f64) -> f64 {
+    /// Follows to a place that is reached at a `rate`, per second.
+    pub(crate) fn follow(&mut self, to: f64, rate: f64) -> f64 {
         let by = to - self.position;
         if by.is_nan() {
             self.position = to;
-        } else if by * self.way > 0.0 || by.abs() > self.noise {
+        } else if by.abs() > self.noise || by * self.way > 0.0 && rate * self.way * self.within_s > self.noise {
             self.position = to;
             self.way = by.signum();
         }
@@ -246,10 +260,21 @@ mod tests {
     }
 
     #[test]
-    fn noise_at_rest_is_no_way_back() {
-        let mut onward = Onward::new(0.3);
-        let path: Vec<f64> = [0.0, 1.0, 2.0, 1.9, 2.1, 1.85, 2.05, 1.5, 1.6, 1.0].map(|to| onward.follow(to)).into();
-        assert_eq!(path, [0.0, 1.0, 2.0, 2.0, 2.1, 2.1, 2.1, 1.5, 1.5, 1.0]);
+    fn noise_at_rest_is_no_way() {
+        let mut onward = Onward::new(0.3, 1.0);
+        let moving = [(0.0, 1.0), (1.0, 1.0), (2.0, 1.0), (2.1, 0.5)];
+        let resting = [(1.9, -0.2), (2.2, 0.1), (1.85, 0.0), (2.3, 0.2)];
+        let turning = [(1.7, -0.1), (1.75, 0.4), (1.6, -0.4)];
+        let path = [&moving[..], &resting, &turning].concat();
+        let path: Vec<f64> = path.into_iter().map(|(to, rate)| onward.follow(to, rate)).collect();
+        assert_eq!(path, [0.0, 1.0, 2.0, 2.1, 2.1, 2.1, 2.1, 2.1, 1.7, 1.7, 1.6]);
+    }
+
+    #[test]
+    fn what_creeps_comes_along() {
+        let mut onward = Onward::new(0.3, 1.0);
+        let path: Vec<f64> = (0..100).map(|step| onward.follow(f64::from(step) * 0.01, 0.01)).collect();
+        assert!((0..100).all(|step| (path[step] - step as f64 * 0.01).abs() < 0.31));
     }
 
     #[test]

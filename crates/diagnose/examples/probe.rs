@@ -16,7 +16,7 @@ fn main() {
     let begin = std::time::Instant::now();
     let gates = gate(recordings).unwrap();
     let prepared = direct(gates, model.direction, model.form).unwrap();
-    let track = Track::of(&prepared, model.direction, model.geometry.rest_length_m).unwrap();
+    let track = Track::of(&prepared, model.direction, &model.force_model()).unwrap();
     println!("{} instants, {} counted, {} blocks", track.n(), track.n_counted(), track.blocks.len());
     let limits =
         Limits { max_effects: 4, excluded: Vec::new(), matters_above_n: None, sensor_floor_n: model.fit.noise_floor_n };

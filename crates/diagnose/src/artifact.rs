@@ -52,12 +52,11 @@ impl Agreement {
     /// [`DiagnoseError::Recording`] where samples cannot be read back.
     pub fn of(diagnosis: &Diagnosis) -> Result<Self, DiagnoseError> {
         let Diagnosis { estimation, holdout, base, augmented, model, .. } = diagnosis;
-        let rest_length_m = model.geometry.rest_length_m;
         Ok(Self {
             base_estimation: evaluate(estimation, base)?,
             base_holdout: evaluate(holdout, base)?,
-            estimation: evaluate_augmented(estimation, augmented, model.direction, rest_length_m)?,
-            holdout: evaluate_augmented(holdout, &augmented.without_events(), model.direction, rest_length_m)?,
+            estimation: evaluate_augmented(estimation, augmented, model.direction)?,
+            holdout: evaluate_augmented(holdout, &augmented.without_events(), model.direction)?,
             noise_floor_n: noise_floor_n(estimation, augmented.base())?,
             effective_samples: effective_samples(diagnosis)?,
         })
@@ -72,7 +71,7 @@ fn effective_samples(diagnosis: &Diagnosis) -> Result<f64, DiagnoseError> {
     let (mut products, mut counts) = (vec![0.0; MOST_LAGS], vec![0.0; MOST_LAGS]);
     let mut n_samples = 0.0;
     for (index, prepared) in estimation.iter().enumerate() {
-        let trace = trace_augmented(prepared, augmented, model.direction, model.geometry.rest_length_m, index)?;
+        let trace = trace_augmented(prepared, augmented, model.direction, index)?;
         let residuals_n: Vec<f64> = trace
             .force_n
             .iter()

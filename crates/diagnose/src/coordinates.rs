@@ -44,6 +44,11 @@ impl Coordinates {
         Self { values, moving }
     }
 
+    /// Takes `values`, one at every instant, for those of `coordinate`.
+    pub fn replace(&mut self, coordinate: Coordinate, values: Vec<f64>) {
+        self.values[coordinate as usize] = values;
+    }
+
     /// Values of one coordinate at every instant.
     pub fn of_kind(&self, coordinate: Coordinate) -> &[f64] {
         &self.values[coordinate as usize]

@@ -100,7 +100,7 @@ pub const MAX_EFFECTS: usize = 4;
 pub fn check(request: Request) -> Result<(), DiagnoseError> {
     let (estimation, _) =
         check::prepare(request.estimation, request.holdout, &request.model, request.accept_implausible)?;
-    let track = Track::of(&estimation, request.model.direction, request.model.geometry.rest_length_m)?;
+    let track = Track::of(&estimation, request.model.direction, &request.model.force_model())?;
     check::long_enough(&track, &estimation)
 }
 
@@ -119,7 +119,7 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
 pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Result<Diagnosis, DiagnoseError> {
     let Request { estimation, holdout, model, config, accept_implausible } = request;
     let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
-    let track = Track::of(&estimation, model.direction, model.geometry.rest_length_m)?;
+    let track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
     let limits = Limits {
         max_effects: config.max_effects,

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::moment::SLIDE_M_PER_PA;
 use pam_core::effects::{AugmentedModel, Effect, Moment, Seen, Term};
 use pam_core::force::{BaseParameters, ForceModel, Form, Parameter};
 use pam_core::motion::Instant;
@@ -229,7 +228,8 @@ impl Path {
                 last = Some((pressure_pa, contraction_ratio));
                 let contracted_m = (contraction_ratio - last_ratio) * muscle.rest_length_m;
                 // Where the length stands still, the pressure moves the strands.
-                let slid_m = if contracted_m == 0.0 { SLIDE_M_PER_PA * (pressure_pa - last_pa) } else { contracted_m };
+                let slide_m_per_pa = base.slide_m_per_pa(length_m);
+                let slid_m = if contracted_m == 0.0 { slide_m_per_pa * (pressure_pa - last_pa) } else { contracted_m };
                 if slid_m.abs() > 1e-12 {
                     direction = slid_m.signum();
                 }
@@ -248,7 +248,7 @@ impl Path {
                         contraction_ratio,
                         speed_m_per_s: (after.1 - before.1) * per_s,
                         slide_speed_m_per_s: if contracted_m == 0.0 {
-                            SLIDE_M_PER_PA * (after.0 - before.0) / (2.0 * step_s)
+                            slide_m_per_pa * (after.0 - before.0) / (2.0 * step_s)
                         } else {
                             (after.1 - before.1) * per_s
                         },

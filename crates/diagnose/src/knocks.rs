@@ -110,7 +110,7 @@ impl Knocks {
         if explained.terms().len() >= limits.max_effects || limits.excluded.iter().any(|id| id == ID) {
             return Ok(None);
         }
-        let knocks = Self::all(recordings, explained, model.direction, model.geometry.rest_length_m, residual)?;
+        let knocks = Self::all(recordings, explained, model.direction, residual)?;
         if knocks.len() < LEAST_KNOCKS {
             return Ok(None);
         }
@@ -121,13 +121,11 @@ impl Knocks {
         Ok(knocks.filter(|knocks| knocks.all_rows_n > matters_n))
     }
 
-    /// All in `recordings`, with what `model` leaves around them. `thresholds` are those of the direction, `rest_length_m` is
-    /// that of the muscle.
+    /// All in `recordings`, with what `model` leaves around them. `thresholds` are those of the direction.
     fn all(
         recordings: &[Prepared],
         model: &AugmentedModel,
         thresholds: Thresholds,
-        rest_length_m: f64,
         residual: Residual,
     ) -> Result<Vec<Knock>, IdentifyError> {
         let found: Result<Vec<Vec<Knock>>, IdentifyError> = recordings
@@ -135,7 +133,7 @@ impl Knocks {
             .enumerate()
             .map(|(index, prepared)| {
                 let mut lines: Vec<Line> = Vec::new();
-                walk_augmented(prepared, model, thresholds, rest_length_m, index, &mut |instant, model_n| {
+                walk_augmented(prepared, model, thresholds, index, &mut |instant, model_n| {
                     if instant.moment.step_s == 0.0 || lines.is_empty() {
                         lines.push(Line { recording: index, first_row: instant.row, ..Line::default() });
                     }

@@ -4,7 +4,6 @@
 //! Corners of the path are rounded over [`HALF_CORNER_S`] to either side, as a drive does.
 
 use pam_core::effects::Moment;
-use pam_core::effects::moment::SLIDE_M_PER_PA;
 use pam_core::force::ForceModel;
 use pam_core::motion::Instant;
 use pam_core::smoothing::HALF_WINDOW_S;
@@ -98,9 +97,10 @@ impl Rehearsal {
             let span_s = after.0 - before.0;
             let rate = |left: f64, right: f64| if span_s > 0.0 { (right - left) / span_s } else { 0.0 };
             let step_s = if at == 0 { 0.0 } else { point.time_s - points[at - 1].time_s };
+            let slide_m_per_pa = reach.model.slide_m_per_pa(here.2);
             if at > 0 && point.rests {
                 let last_pa = self.track.instants[first + at - 1].moment.pressure_pa;
-                slide_by_pressure_m += SLIDE_M_PER_PA * (here.1 - last_pa);
+                slide_by_pressure_m += slide_m_per_pa * (here.1 - last_pa);
             }
             let moment = Moment {
                 recording: index,
@@ -112,7 +112,7 @@ impl Rehearsal {
                 contraction_ratio: muscle.contraction_ratio(here.2),
                 speed_m_per_s: -rate(before.2, after.2),
                 slide_speed_m_per_s: if point.rests {
-                    SLIDE_M_PER_PA * rate(before.1, after.1)
+                    slide_m_per_pa * rate(before.1, after.1)
                 } else {
                     -rate(before.2, after.2)
                 },

@@ -1,12 +1,13 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 
+use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::Seen;
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::Guess;
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
-use crate::structure::{Feature, Remainder, Structure, features};
+use crate::structure::{Feature, Remainder, Structure, features, telling_force_n};
 use crate::trial::{self, Shapes, Trial};
 
 /// Limits of a search.
@@ -81,12 +82,14 @@ pub fn search(
     looked: &dyn Fn(),
 ) -> Option<Found> {
     let base = judged(setting, setting.fit(Vec::new(), start, model)?)?;
-    let coordinates = Coordinates::of(setting.track);
+    let remainder = Remainder::of(setting, &base.state);
+    let mut coordinates = Coordinates::of(setting.track);
+    coordinates.replace(Coordinate::Force, telling_force_n(setting, &base.state, &remainder));
     let features = features(setting, &coordinates);
     let track = setting.track;
     let seen = Seen::of(track.instants.iter().zip(&track.counted).filter(|(_, counted)| **counted).map(|(at, _)| at));
     let every: Vec<&Feature> = features.iter().collect();
-    let unnamed = Remainder::of(setting, &base.state).structure(&every);
+    let unnamed = remainder.structure(&every);
     let mut floor_square = base.held_out.mean_square();
     if let Some(unnamed) = &unnamed {
         floor_square = floor_square.min(unnamed.held_out.mean_square());
@@ -215,7 +218,7 @@ fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
 }
 
 /// Rounds in which details and the other shapes settle with one another.
-const DETAIL_SWEEPS: usize = 4;
+const DETAIL_SWEEPS: usize = 10;
 
 /// `state` with the best details of its effects; none where no effect has any.
 fn detailed(setting: &Setting<'_>, state: &State) -> Option<State> {

@@ -20,6 +20,9 @@ use crate::track::FOLDS;
 /// Squares of the coefficients count as much as this many instants: neighbors share their noise.
 const RIDGE: f64 = 10.0;
 
+/// Knots over the force.
+const FORCE_KNOTS: usize = 32;
+
 /// Functions over one coordinate, or over pressure and contraction.
 #[derive(Debug, Clone)]
 pub struct Feature {
@@ -54,24 +57,16 @@ pub fn features(setting: &Setting<'_>, coordinates: &Coordinates) -> Vec<Feature
     for (coordinate, knots, odd) in [
         (Coordinate::Pressure, 14, true),
         (Coordinate::Contraction, 20, true),
-        (Coordinate::Force, 32, true),
+        (Coordinate::Force, FORCE_KNOTS, true),
         (Coordinate::Speed, 10, true),
         (Coordinate::TravelSinceReversal, 12, true),
         (Coordinate::TimeSinceLastMove, 8, true),
         (Coordinate::Cycle, 8, false),
     ] {
         let values = coordinates.of_kind(coordinate);
-        let knots = quantile_knots(values, &track.counted, knots, coordinate);
-        if knots.len() < 3 {
-            continue;
-        }
-        for odd in if odd { vec![false, true] } else { vec![false] } {
-            let entries = values
-                .iter()
-                .zip(&direction)
-                .map(|(&value, &direction)| hats(&knots, value, if odd { direction } else { 1.0 }))
-                .collect();
-            features.push(Feature { coordinate, odd, plane: false, n: knots.len(), entries, knots: knots.clone() });
+        features.extend(over(values, &track.counted, coordinate, knots, None));
+        if odd {
+            features.extend(over(values, &track.counted, coordinate, knots, Some(&direction)));
         }
     }
     features.push(over_time(setting, coordinates));
@@ -79,6 +74,37 @@ pub fn features(setting: &Setting<'_>, coordinates: &Coordinates) -> Vec<Feature
         features.push(over_plane(setting, coordinates, &direction, odd));
     }
     features
+}
+
+/// Functions of one coordinate, odd in `direction` where it is given; none where too little counts.
+fn over(
+    values: &[f64],
+    counted: &[bool],
+    coordinate: Coordinate,
+    knots: usize,
+    direction: Option<&[f64]>,
+) -> Option<Feature> {
+    let knots = quantile_knots(values, counted, knots, coordinate);
+    if knots.len() < 3 {
+        return None;
+    }
+    let factor = |at: usize| direction.map_or(1.0, |direction| direction[at]);
+    let entries = values.iter().enumerate().map(|(at, &value)| hats(&knots, value, factor(at))).collect();
+    Some(Feature { coordinate, odd: direction.is_some(), plane: false, n: knots.len(), entries, knots })
+}
+
+/// The force that orders the residual of `state` best: as measured, or as it should have been measured. What a load cell does
+/// wrong over part of its range is a function of that, while its reading may pass the same value twice.
+pub fn telling_force_n(setting: &Setting<'_>, state: &State, remainder: &Remainder) -> Vec<f64> {
+    let measured_n: Vec<f64> = setting.track.instants.iter().map(|instant| instant.force_n).collect();
+    let due_n: Vec<f64> =
+        measured_n.iter().zip(setting.residuals_n(state)).map(|(force_n, residual_n)| force_n - residual_n).collect();
+    let left = |force_n: &[f64]| {
+        over(force_n, &setting.track.counted, Coordinate::Force, FORCE_KNOTS, None)
+            .and_then(|feature| remainder.structure(&[&feature]))
+            .map_or(f64::INFINITY, |structure| structure.held_out.mean_square())
+    };
+    if left(&due_n) < left(&measured_n) { due_n } else { measured_n }
 }
 
 /// Knots such that about as many counted instants lie between any two; fewer where values repeat.

@@ -87,8 +87,7 @@ fn walked(
     let mut walked = Vec::with_capacity(prepared.recording.samples.n_rows() / stride + 1);
     // The first row behind a gap says so, whether its turn has come or not.
     let mut gap = false;
-    let (thresholds, rest_length_m) = (diagnosis.model.direction, diagnosis.model.geometry.rest_length_m);
-    walk_augmented(prepared, model, thresholds, rest_length_m, index, &mut |instant, model_n| {
+    walk_augmented(prepared, model, diagnosis.model.direction, index, &mut |instant, model_n| {
         gap |= instant.moment.step_s == 0.0;
         if instant.row.is_multiple_of(stride) {
             let mut instant = *instant;

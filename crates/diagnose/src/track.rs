@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use pam_core::direction::Thresholds;
+use pam_core::force::ForceModel;
 use pam_core::motion::{Channels, Instant, walk};
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
@@ -16,7 +17,7 @@ use crate::knocks::Knocks;
 /// Time between instants, in s, as long as there are fewer than [`MOST_INSTANTS`].
 const PERIOD_S: f64 = 0.02;
 /// Instants of all recordings together, at most; longer recordings are thinned further.
-const MOST_INSTANTS: usize = 300_000;
+const MOST_INSTANTS: usize = 160_000;
 /// Blocks that the recordings together are cut into, about.
 const BLOCKS: usize = 32;
 
@@ -52,7 +53,7 @@ impl Track {
     ///
     /// # Errors
     /// [`IdentifyError::Samples`] where samples cannot be read back.
-    pub fn of(recordings: &[Prepared], thresholds: Thresholds, rest_length_m: f64) -> Result<Self, IdentifyError> {
+    pub fn of(recordings: &[Prepared], thresholds: Thresholds, base: &ForceModel) -> Result<Self, IdentifyError> {
         let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
         let thinned = n_rows.div_ceil(MOST_INSTANTS);
         let walked: Result<Vec<Vec<Instant>>, IdentifyError> = recordings
@@ -65,7 +66,7 @@ impl Track {
                     &prepared.recording,
                     &prepared.direction,
                     thresholds,
-                    rest_length_m,
+                    base,
                     index,
                     stride,
                     Channels::Smooth,

@@ -131,7 +131,7 @@ pub fn evaluate(recordings: &[Prepared], model: &ForceModel) -> Result<Evaluatio
 }
 
 /// Compares an augmented model with `recordings`, each numbered by its place among them; `thresholds` are those of the
-/// direction, `rest_length_m` is that of the muscle. A model without effects costs what [`evaluate`] costs.
+/// direction. A model without effects costs what [`evaluate`] costs.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
@@ -139,7 +139,6 @@ pub fn evaluate_augmented(
     recordings: &[Prepared],
     model: &AugmentedModel,
     thresholds: Thresholds,
-    rest_length_m: f64,
 ) -> Result<Evaluation, IdentifyError> {
     if model.is_plain() {
         return evaluate(recordings, model.base());
@@ -149,7 +148,7 @@ pub fn evaluate_augmented(
         .enumerate()
         .map(|(index, prepared)| {
             let mut tally = Tally::default();
-            walk_augmented(prepared, model, thresholds, rest_length_m, index, &mut |instant, model_n| {
+            walk_augmented(prepared, model, thresholds, index, &mut |instant, model_n| {
                 if instant.settled {
                     tally.push(instant.force_n, model_n);
                 } else {
@@ -290,12 +289,11 @@ pub fn trace_augmented(
     prepared: &Prepared,
     model: &AugmentedModel,
     thresholds: Thresholds,
-    rest_length_m: f64,
     index: usize,
 ) -> Result<Trace, IdentifyError> {
     let stride = trace_stride(prepared);
     let mut model_n = Vec::new();
-    walk_augmented(prepared, model, thresholds, rest_length_m, index, &mut |instant, force_n| {
+    walk_augmented(prepared, model, thresholds, index, &mut |instant, force_n| {
         if instant.row.is_multiple_of(stride) {
             model_n.push(force_n);
         }

@@ -45,7 +45,6 @@ pub fn walk_augmented(
     prepared: &Prepared,
     model: &AugmentedModel,
     thresholds: Thresholds,
-    rest_length_m: f64,
     index: usize,
     visit: &mut dyn FnMut(&Instant, f64),
 ) -> io::Result<()> {
@@ -64,7 +63,7 @@ pub fn walk_augmented(
         force_n
     };
     let walk = |visit: &mut dyn FnMut(Instant)| {
-        walk(recording, direction, thresholds, rest_length_m, index, 1, Channels::Recorded, visit)
+        walk(recording, direction, thresholds, model.base(), index, 1, Channels::Recorded, visit)
     };
     let delays_s = model.delays_s();
     if delays_s == [0.0; 2] {
@@ -86,10 +85,9 @@ pub fn augmented_forces_n(
     prepared: &Prepared,
     model: &AugmentedModel,
     thresholds: Thresholds,
-    rest_length_m: f64,
 ) -> Result<Vec<f64>, IdentifyError> {
     let mut forces_n = Vec::with_capacity(prepared.recording.samples.n_rows());
-    walk_augmented(prepared, model, thresholds, rest_length_m, 0, &mut |_, force_n| forces_n.push(force_n))
+    walk_augmented(prepared, model, thresholds, 0, &mut |_, force_n| forces_n.push(force_n))
         .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
     Ok(forces_n)
 }

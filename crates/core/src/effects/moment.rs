@@ -23,8 +23,8 @@ pub struct Moment {
     pub contraction_ratio: f64,
     /// Speed of contraction, `-dL/dt`, smooth.
     pub speed_m_per_s: f64,
-    /// Speed at which the braid slides: that of contraction, and where the length stands still [`SLIDE_M_PER_PA`] times the
-    /// rate of the pressure.
+    /// Speed at which the braid slides: that of contraction, and where the length stands still
+    /// [`ForceModel::slide_m_per_pa`] times the rate of the pressure.
     pub slide_speed_m_per_s: f64,
     /// Acceleration of contraction, smooth.
     pub acceleration_m_per_s2: f64,
@@ -33,15 +33,11 @@ pub struct Moment {
     /// Whether the muscle is known to have come in that direction to where it is. The beginning of a recording does not say.
     pub came: bool,
     /// How far the braid has slid, rising while it contracts: the smooth contraction in metres, and where the length stands
-    /// still [`SLIDE_M_PER_PA`] times the pressure.
+    /// still [`ForceModel::slide_m_per_pa`] times the pressure.
     pub slide_m: f64,
     /// Force as measured, smooth, where it was measured; as the model had it a moment ago elsewhere.
     pub force_n: f64,
 }
-
-/// How far the strands of a muscle that is held at its ends slide over one another per pascal, in m/Pa: the
-/// stretch of nylon strands and the indentation of the bladder give some 20 mm at 0.5 MPa.
-pub const SLIDE_M_PER_PA: f64 = 4e-8;
 
 /// What eq. 11 says at the same instant, at the pressure and length that the muscle sees.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

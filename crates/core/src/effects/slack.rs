@@ -1,8 +1,11 @@
 //! Slack: a cable or a soft muscle cannot push, so the load cell reads a floor.
 //!
 //! ```text
-//! F_read = F_floor + w ln(1 + e^{(F - F_floor) / w}),   max(F, F_floor) where w = 0
+//! F_read = F_floor + h,   h - w³ / h² = F - F_floor,   max(F, F_floor) where w = 0
 //! ```
+//!
+//! A slack muscle is a column with a bow. Under a load `h` beyond its buckling load the bow shrinks as `1/h` (Timoshenko and
+//! Gere, 1961, "Theory of Elastic Stability"), and with its square the length that it takes from the muscle between its ends.
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Effect, Kind, Memory, Role, Seen, Shape};
@@ -14,6 +17,9 @@ const RANGE_N: (f64, f64) = (-50.0, 50.0);
 
 /// Softnesses that are tried when every effect is named, in N.
 const SOFTNESSES_N: [f64; 4] = [2.0, 5.0, 10.0, 20.0];
+
+/// So many times the softness below the floor, `h` is its limit to nine digits.
+const FAR: f64 = 1e6;
 
 /// Below it the end is sharp, in N.
 const SHARP_N: f64 = 1e-3;
@@ -63,12 +69,7 @@ struct State {
 
 impl Memory for State {
     fn reads(&mut self, force_n: f64) -> f64 {
-        let above_n = force_n - self.floor_n;
-        if self.softness_n < SHARP_N {
-            return force_n.max(self.floor_n);
-        }
-        // The same without overflow.
-        self.floor_n + above_n.max(0.0) + self.softness_n * (-above_n.abs() / self.softness_n).exp().ln_1p()
+        self.floor_n + taut_n(force_n - self.floor_n, self.softness_n)
     }
 
     fn slope(&self, force_n: f64) -> f64 {
@@ -76,7 +77,30 @@ impl Memory for State {
         if self.softness_n < SHARP_N {
             return f64::from(u8::from(above_n >= 0.0));
         }
-        1.0 / (1.0 + (-above_n / self.softness_n).exp())
+        let taut_n = taut_n(above_n, self.softness_n);
+        taut_n / (3.0 * taut_n - 2.0 * above_n)
+    }
+}
+
+/// `h` where `h - w³ / h²` is `above_n`.
+fn taut_n(above_n: f64, softness_n: f64) -> f64 {
+    if softness_n < SHARP_N {
+        return above_n.max(0.0);
+    }
+    if above_n < -FAR * softness_n {
+        return softness_n * (softness_n / -above_n).sqrt();
+    }
+    // From above, where the cubic is convex: every step of Newton's stays above.
+    let ratio = softness_n / above_n.abs();
+    let mut taut_n = softness_n
+        * if above_n > 0.0 { above_n / softness_n + (ratio * ratio).min(1.0) } else { ratio.sqrt().min(1.0) };
+    loop {
+        let left = taut_n * taut_n * (taut_n - above_n) - softness_n.powi(3);
+        let step_n = left / (taut_n * (3.0 * taut_n - 2.0 * above_n));
+        taut_n -= step_n;
+        if step_n <= 1e-12 * taut_n {
+            return taut_n;
+        }
     }
 }
 
@@ -85,17 +109,18 @@ static PAGE: Page = Page {
     name: "slack",
     summary: "A cable goes slack and a soft muscle buckles before either pushes, so the load cell reads its floor \
               wherever the model has the muscle push.",
-    equation: "F = F_floor + w ln(1 + exp((F_base - F_floor) / w)),  max(F_base, F_floor) where w = 0",
+    equation: "F = F_floor + h,  h - w³ / h² = F_base - F_floor,  max(F_base, F_floor) where w = 0",
     symbols: &[
         Symbol {
             symbol: "F_floor",
             unit: "N",
-            meaning: "what the cell reads of a slack muscle: its tare and the weight that hangs on it; -5 to 5 N",
+            meaning: "what the cell reads of a slack muscle: its tare, the weight that hangs on it, less the load at which it \
+                      buckles; -15 to 5 N",
         },
         Symbol {
             symbol: "w",
             unit: "N",
-            meaning: "softness: a bent muscle straightens bit by bit; 0 for a cable, 15 and 25 N measured on two Festo \
+            meaning: "softness: a bent muscle straightens bit by bit; 0 for a cable, 11 and 15 N measured on two Festo \
                       muscles (10 mm; 30 and 20 cm)",
         },
     ],
@@ -134,16 +159,20 @@ mod tests {
     }
 
     #[test]
-    fn a_soft_end_is_smooth_and_far_from_it_there_is_none() {
-        let (mut soft, mut sharp) = (Slack.start(&nominal(), &[2.0, 5.0]), Slack.start(&nominal(), &[2.0, 0.0]));
-        for force_n in [-900.0, -100.0, 110.0, 900.0] {
-            assert!((soft.reads(force_n) - sharp.reads(force_n)).abs() < 1e-6);
+    fn a_soft_end_is_smooth_and_straightens_as_a_bow_does() {
+        let mut soft = Slack.start(&nominal(), &[2.0, 5.0]);
+        // The model's force of a muscle whose bow has shrunk to what the reading leaves of it.
+        for taut_n in [1e-3_f64, 0.3, 5.0, 8.0, 60.0, 900.0] {
+            let force_n = 2.0 + taut_n - 125.0 / (taut_n * taut_n);
+            assert!((soft.reads(force_n) - 2.0 - taut_n).abs() < 1e-9 * taut_n, "{taut_n}");
         }
-        assert!((soft.reads(2.0) - (2.0 + 5.0 * 2.0_f64.ln())).abs() < 1e-12);
+        assert!((soft.reads(2.0) - 7.0).abs() < 1e-12);
         for force_n in [-20.0, 1.0, 2.0, 15.0] {
             let slope = (soft.reads(force_n + 1e-4) - soft.reads(force_n - 1e-4)) / 2e-4;
             assert!((soft.slope(force_n) - slope).abs() < 1e-6);
         }
+        assert_eq!(soft.reads(f64::NEG_INFINITY), 2.0);
+        assert!((soft.reads(5000.0) - 5000.0).abs() < 1e-4);
     }
 
     #[test]

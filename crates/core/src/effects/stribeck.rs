@@ -57,20 +57,31 @@ impl Effect for Stribeck {
 struct State {
     stribeck_speed_m_per_s: f64,
     exponent: f64,
-    /// Recording, slide and `h` of the moment before.
-    last: Option<(usize, f64, f64)>,
+    last: Option<Last>,
+}
+
+/// The moment before.
+struct Last {
+    recording: usize,
+    slide_m: f64,
+    speed_m_per_s: f64,
+    /// `h`.
+    level: f64,
 }
 
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
-        let crawl = (-(now.slide_speed_m_per_s.abs() / self.stribeck_speed_m_per_s).powf(self.exponent)).exp();
-        let level = match self.last {
-            Some((recording, slide_m, level)) if recording == now.recording => {
-                crawl + (level - crawl) * (-(now.slide_m - slide_m).abs() / RENEWAL_M).exp()
+        let speed_m_per_s = now.slide_speed_m_per_s.abs();
+        let crawl = |speed_m_per_s: f64| (-(speed_m_per_s / self.stribeck_speed_m_per_s).powf(self.exponent)).exp();
+        let level = match &self.last {
+            Some(last) if last.recording == now.recording => {
+                // In a step in which it starts or stops, the way is that of its motion.
+                let crawl = crawl(speed_m_per_s.max(last.speed_m_per_s));
+                crawl + (last.level - crawl) * (-(now.slide_m - last.slide_m).abs() / RENEWAL_M).exp()
             }
-            _ => crawl,
+            _ => crawl(speed_m_per_s),
         };
-        self.last = Some((now.recording, now.slide_m, level));
+        self.last = Some(Last { recording: now.recording, slide_m: now.slide_m, speed_m_per_s, level });
         columns[0] = -now.direction * base.normal_n * level;
     }
 }
@@ -148,6 +159,9 @@ mod tests {
         assert!(at(0.0, 0.0) < 1e-12);
         assert!((at(RENEWAL_M, 0.0) - (1.0 - (-1.0_f64).exp())).abs() < 1e-9);
         assert!(at(30.0 * RENEWAL_M, 0.0) > 1.0 - 1e-9);
+        // The way of a step in which it stops is that of its motion.
+        assert!(at(60.0 * RENEWAL_M, 1.0) < 1e-12);
+        assert!(at(90.0 * RENEWAL_M, 0.0) < 1e-12);
     }
 
     #[test]

@@ -155,6 +155,8 @@ pub struct ForceModel {
     parameters: BaseParameters,
     muscle: Muscle,
     strand_modulus_pa: f64,
+    /// Strain of the strands per pressure and length, in 1/(Pa m).
+    stretch: f64,
     kinematics: Kinematics,
     gas: gas::Gas,
     bladder: bladder::Bladder,
@@ -163,13 +165,14 @@ pub struct ForceModel {
 }
 
 impl ForceModel {
-    /// The model of `muscle`; `strand_modulus_pa` serves the contact between strands alone.
+    /// The model of `muscle`; `strand_modulus_pa` serves the contact between strands, and how far they slide under pressure.
     pub fn new(muscle: &Muscle, strand_modulus_pa: f64, form: Form, parameters: BaseParameters) -> Self {
         Self {
             form,
             parameters,
             muscle: muscle.clone(),
             strand_modulus_pa,
+            stretch: braid::Braid::new(muscle, Form::Corrected).strain(1.0, 1.0, 1.0 / strand_modulus_pa),
             kinematics: Kinematics::of(muscle),
             gas: gas::Gas::new(muscle),
             bladder: bladder::Bladder::new(muscle),
@@ -181,6 +184,13 @@ impl ForceModel {
     /// Muscle that the model describes.
     pub fn muscle(&self) -> &Muscle {
         &self.muscle
+    }
+
+    /// How far the strands slide over one another per pascal while the muscle is held at a length, in m/Pa: their stretch
+    /// (eq. 2) changes the angle of the braid as much as a shortening by `L Δy` does. The indentation of the bladder, which
+    /// adds to it, is left out.
+    pub fn slide_m_per_pa(&self, length_m: f64) -> f64 {
+        self.stretch * length_m * length_m
     }
 
     /// Modulus that the contact between strands is computed with, in Pa.
