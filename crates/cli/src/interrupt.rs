@@ -1,4 +1,4 @@
-//! Ctrl-C and termination: no temporary file stays behind, exit code 130.
+//! Ctrl-C, termination and panics: no temporary file stays behind, exit code 130, after a panic 101.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -7,10 +7,18 @@ use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 /// Files that outputs are working on.
 #[derive(Debug)]
 pub(crate) struct Live {
-    /// Temporaries to delete when the program is interrupted.
+    /// Temporaries to delete when the program ends early.
     pub(crate) temporaries: BTreeSet<PathBuf>,
     /// Targets that outputs hold, so that no two of them write to one.
     pub(crate) targets: BTreeSet<PathBuf>,
+}
+
+impl Live {
+    fn delete_temporaries(&self) {
+        for path in &self.temporaries {
+            let _ = std::fs::remove_file(path);
+        }
+    }
 }
 
 static LIVE: Mutex<Live> = Mutex::new(Live { temporaries: BTreeSet::new(), targets: BTreeSet::new() });
@@ -34,13 +42,25 @@ pub fn start() {
         // Without a handler the system ends the program just as well; only a temporary may stay behind.
         let _ = ctrlc::set_handler(|| {
             let live = live();
-            for path in &live.temporaries {
-                let _ = std::fs::remove_file(path);
-            }
+            live.delete_temporaries();
             // The lock is never given back: the main thread must not create another one meanwhile.
             std::process::exit(130);
         });
     });
+}
+
+/// Makes a panic of any thread, once it is reported, delete live temporaries and exit with code 101: nothing is
+/// unwound, as a release build could not, so that no output cleans up after itself.
+pub(crate) fn end_on_panic() {
+    let report = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        report(panic);
+        // Not waited for: the panicking thread may hold it itself.
+        if let Ok(live) = LIVE.try_lock() {
+            live.delete_temporaries();
+        }
+        std::process::exit(101);
+    }));
 }
 
 /// Whether the program was started with hang-ups ignored; Linux tells, elsewhere it is taken as no.

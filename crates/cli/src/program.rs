@@ -34,6 +34,7 @@ fn print(text: &[u8]) -> Result<(), OutputError> {
 }
 
 fn program<Args: Parser>(run: impl FnOnce(&Args) -> anyhow::Result<Verdict>, artifact: Option<Schema>) -> ExitCode {
+    interrupt::end_on_panic();
     interrupt::start();
     let command = || about::with_options(Args::command(), artifact.is_some());
     let format = Format::of_command_line();

@@ -51,6 +51,11 @@ fn run(args: &Args) -> anyhow::Result<Verdict> {
                 bar.advance(1);
             }
         }
+        "panic" => {
+            output.write_all(&vec![b'x'; 1 << 20])?;
+            assert!(fs::read_dir(args.out.parent().unwrap())?.next().is_some(), "no temporary yet");
+            rayon::join(|| panic!("a mistake of ours"), || ());
+        }
         "threads" => output.commit(rayon_threads())?,
         "hang" => {
             output.write_all(&vec![b'x'; 1 << 20])?;
@@ -198,6 +203,15 @@ fn a_signal_leaves_no_file_and_gives_130() {
     }
 }
 
+fn a_panic_leaves_no_file_and_gives_101() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("model.json");
+    let (code, _, stderr) = finish(&["panic", "--out", out.to_str().unwrap()]);
+    assert_eq!(code, Some(101));
+    assert!(stderr.contains("a mistake of ours"), "{stderr}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
 fn main() -> ExitCode {
     if std::env::var_os("PAM_CLI_TEST_CHILD").is_some() {
         return pam_cli::main_with_schema::<Args, Artifact>(run);
@@ -209,5 +223,6 @@ fn main() -> ExitCode {
     a_closed_pipe_is_quiet_and_code_2();
     a_full_standard_output_is_one_line_and_code_2();
     a_signal_leaves_no_file_and_gives_130();
+    a_panic_leaves_no_file_and_gives_101();
     ExitCode::SUCCESS
 }
