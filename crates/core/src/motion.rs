@@ -89,7 +89,10 @@ pub fn walk(
             let [pressure, length] = if recorded {
                 [sharp_pressure, sharp_length]
             } else {
-                [&pressures, &lengths].map(|path| path.smooth(windows, at))
+                [
+                    pressures.smooth_near_knee(windows, at).unwrap_or(sharp_pressure),
+                    lengths.smooth_near_knee(windows, at).unwrap_or(sharp_length),
+                ]
             };
             let smooth_force_n = near.parabola(&rows.force_n, at).value;
             let (average_m, average_pa) = (lengths.average(&average, at), pressures.average(&average, at));
@@ -204,15 +207,15 @@ impl Path {
         }
     }
 
-    /// The same where knees are as smooth as all else.
-    fn smooth(&self, [near, window]: [&Window; 2], at: usize) -> Parabola {
+    /// The same where knees are as smooth as all else; none where there is no knee to smooth.
+    fn smooth_near_knee(&self, [near, window]: [&Window; 2], at: usize) -> Option<Parabola> {
         let around = window.around(at, self.rest.len());
         if !self.knees.any_within(&around) {
-            return self.sharp([near, window], at);
+            return None;
         }
         let recorded: Vec<f64> = around.clone().map(|row| self.recorded(row)).collect();
         let Parabola { value, curvature, .. } = near.parabola(&recorded, at - around.start);
-        Parabola { value, curvature, ..window.parabola(&recorded, at - around.start) }
+        Some(Parabola { value, curvature, ..window.parabola(&recorded, at - around.start) })
     }
 }
 

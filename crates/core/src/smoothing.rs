@@ -3,7 +3,7 @@
 //! Rates of noisy channels come from a parabola fitted to a centered window of [`HALF_WINDOW_S`] to either side
 //! (Savitzky and Golay, 1964): value, slope and curvature in one go, the same window for every channel, so that smoothing
 //! shifts none against the other. What slides and remembers its path gets an average with positive weights instead, which
-//! never overshoots, and turns back only by more than the noise of that average.
+//! never overshoots, and goes on only where it moves and turns back only by more than the noise of that average.
 
 use std::ops::Range;
 
@@ -46,7 +46,7 @@ impl Window {
         Self { half, period_s, sum2, sum4 }
     }
 
-    /// The rows of `n_rows` that the parabola at row `at` is fitted to.
+    /// The rows of `n_rows` that the parabola at row `at` is fitted to: the nearest whole window.
     pub(crate) fn around(&self, at: usize, n_rows: usize) -> Range<usize> {
         let center = at.min((n_rows - 1).saturating_sub(self.half)).max(self.half);
         center - self.half..(center + self.half + 1).min(n_rows)
@@ -72,10 +72,11 @@ impl Window {
         if channel.len() < width {
             return Parabola { value: channel[at], ..Parabola::default() };
         }
-        let center = at.clamp(self.half, channel.len() - 1 - self.half);
+        let around = self.around(at, channel.len());
+        let center = around.start + self.half;
         let origin = channel[center];
         let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
-        for (offset, value) in channel[center - self.half..=center + self.half].iter().enumerate() {
+        for (offset, value) in channel[around].iter().enumerate() {
             let u = offset as f64 - self.half as f64;
             let value = value - origin;
             sum += value;
@@ -179,7 +180,7 @@ impl Average {
 }
 
 /// What follows a channel but not its noise: to what remembers its path, noise at rest would be a way to and fro. It has no
-/// lag while it goes on one way.
+/// lag while it goes on one way; a creep comes along in steps of the noise.
 pub(crate) struct Onward {
     /// A way that is none.
     noise: f64,

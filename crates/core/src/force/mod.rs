@@ -244,6 +244,8 @@ impl ForceModel {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use crate::muscle::tests::nominal;
 
@@ -261,6 +263,21 @@ mod tests {
             let force_n = model.force_n(3e5, model.muscle().length_m(contraction_ratio), 0.0);
             assert!((force_n - expected_n).abs() < 0.006 * expected_n, "ε = {contraction_ratio}: {force_n}");
         }
+    }
+
+    #[test]
+    fn pressure_turns_the_braid_as_a_shortening_by_its_slide_does() {
+        let (muscle, modulus_pa) = (nominal(), 3e9);
+        let model = ForceModel::new(&muscle, modulus_pa, Form::Corrected, nominal_parameters());
+        let (length_m, pressure_pa, strand_m) = (0.25, 1e3, muscle.strand_length_m());
+        // Axial equilibrium at the middle: the strands carry the gas on the end and the hoop, p L b / (2 π n² N) each.
+        let turns = muscle.turns();
+        let tension_n = pressure_pa * length_m * strand_m / (2.0 * PI * turns * turns * muscle.strand_count);
+        let section_m2 = 0.25 * PI * muscle.strand_diameter_m * muscle.strand_diameter_m;
+        let stretched_m = strand_m * (1.0 + tension_n / (modulus_pa * section_m2));
+        let slid_m = model.slide_m_per_pa(length_m) * pressure_pa;
+        let (turned, shortened) = (length_m / stretched_m, (length_m - slid_m) / strand_m);
+        assert!((turned / shortened - 1.0).abs() < 1e-3 * slid_m / length_m, "{turned} {shortened}");
     }
 
     #[test]
