@@ -344,10 +344,13 @@ fn structured(setting: &Setting<'_>, state: &crate::state::State, found: &Found,
             .features
             .iter()
             .filter(|feature| feature.coordinate == coordinate && !feature.plane)
-            .filter_map(|feature| remainder.structure(&[feature]))
-            .map(|structure| (nothing.held_out.log_ratio(&structure.held_out), structure))
+            .filter_map(|feature| Some((feature, remainder.structure(&[feature])?)))
+            .map(|(feature, structure)| (nothing.held_out.log_ratio(&structure.held_out), feature, structure))
             .max_by(|left, right| left.0.total_cmp(&right.0));
-        let Some((gain, structure)) = best.filter(|(gain, _)| *gain > 0.5) else { continue };
+        let Some((gain, feature, structure)) = best.filter(|(gain, ..)| *gain > 0.5) else { continue };
+        // Every recording has a time of its own.
+        let structure =
+            if coordinate == Coordinate::Time { None } else { remainder.narrowest(feature) }.unwrap_or(structure);
         let excess: Vec<f64> = structure.values_n.iter().map(|value| value * value).collect();
         let looks = found.features.len() as f64;
         let p_value = (chance(&nothing.held_out, &structure.held_out) * looks).min(1.0);

@@ -8,7 +8,7 @@ use crate::state::Setting;
 /// Intervals that a coordinate is divided into.
 const BINS: usize = 24;
 /// An interval belongs to a region as long as its density is at least this share of the highest.
-const EDGE: f64 = 0.2;
+const EDGE: f64 = 0.1;
 /// One that does not is bridged where the next one behind it has at least this share: a residual that changes its sign goes
 /// through zero.
 const BEHIND_A_DIP: f64 = 0.3;

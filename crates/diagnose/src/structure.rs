@@ -5,6 +5,8 @@
 //! parameters can absorb is never taken for structure), drawn towards zero, and judged on held-out blocks like any
 //! candidate. They tell how much of a residual is still structured, and over which coordinate it is concentrated.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::force::columns::N_COLUMNS;
@@ -19,6 +21,9 @@ use crate::track::FOLDS;
 
 /// Squares of the coefficients count as much as this many instants: neighbors share their noise.
 const RIDGE: f64 = 10.0;
+
+/// Share of what all functions gain that may be lost with those that are left out.
+const LOST: f64 = 0.05;
 
 /// Knots over the force.
 const FORCE_KNOTS: usize = 32;
@@ -64,9 +69,13 @@ pub fn features(setting: &Setting<'_>, coordinates: &Coordinates) -> Vec<Feature
         (Coordinate::Cycle, 8, false),
     ] {
         let values = coordinates.of_kind(coordinate);
-        features.extend(over(values, &track.counted, coordinate, knots, None));
+        let knots = quantile_knots(values, &track.counted, knots, coordinate);
+        if knots.len() < 3 {
+            continue;
+        }
+        features.push(over(values, knots.clone(), coordinate, None));
         if odd {
-            features.extend(over(values, &track.counted, coordinate, knots, Some(&direction)));
+            features.push(over(values, knots, coordinate, Some(&direction)));
         }
     }
     features.push(over_time(setting, coordinates));
@@ -76,21 +85,11 @@ pub fn features(setting: &Setting<'_>, coordinates: &Coordinates) -> Vec<Feature
     features
 }
 
-/// Functions of one coordinate, odd in `direction` where it is given; none where too little counts.
-fn over(
-    values: &[f64],
-    counted: &[bool],
-    coordinate: Coordinate,
-    knots: usize,
-    direction: Option<&[f64]>,
-) -> Option<Feature> {
-    let knots = quantile_knots(values, counted, knots, coordinate);
-    if knots.len() < 3 {
-        return None;
-    }
+/// Functions of one coordinate between `knots`, odd in `direction` where it is given.
+fn over(values: &[f64], knots: Vec<f64>, coordinate: Coordinate, direction: Option<&[f64]>) -> Feature {
     let factor = |at: usize| direction.map_or(1.0, |direction| direction[at]);
     let entries = values.iter().enumerate().map(|(at, &value)| hats(&knots, value, factor(at))).collect();
-    Some(Feature { coordinate, odd: direction.is_some(), plane: false, n: knots.len(), entries, knots })
+    Feature { coordinate, odd: direction.is_some(), plane: false, n: knots.len(), entries, knots }
 }
 
 /// The force that orders the residual of `state` best: as measured, or as it should have been measured. What a load cell does
@@ -100,9 +99,10 @@ pub fn telling_force_n(setting: &Setting<'_>, state: &State, remainder: &Remaind
     let due_n: Vec<f64> =
         measured_n.iter().zip(setting.residuals_n(state)).map(|(force_n, residual_n)| force_n - residual_n).collect();
     let left = |force_n: &[f64]| {
-        over(force_n, &setting.track.counted, Coordinate::Force, FORCE_KNOTS, None)
-            .and_then(|feature| remainder.structure(&[&feature]))
-            .map_or(f64::INFINITY, |structure| structure.held_out.mean_square())
+        let knots = quantile_knots(force_n, &setting.track.counted, FORCE_KNOTS, Coordinate::Force);
+        let structure =
+            if knots.len() < 3 { None } else { remainder.structure(&[&over(force_n, knots, Coordinate::Force, None)]) };
+        structure.map_or(f64::INFINITY, |structure| structure.held_out.mean_square())
     };
     if left(&due_n) < left(&measured_n) { due_n } else { measured_n }
 }
@@ -192,13 +192,21 @@ fn over_plane(setting: &Setting<'_>, coordinates: &Coordinates, direction: &[f64
     }
 }
 
+/// Products of columns, summed over the rows that count: the tangent space, functions, and the residual.
+struct Products {
+    blocks: Vec<DMatrix<f64>>,
+    total: DMatrix<f64>,
+    without_fold: Vec<DMatrix<f64>>,
+    width: usize,
+}
+
 /// The residual of a state in the tangent space of its fit, ready for features.
 #[derive(Debug)]
 pub struct Remainder {
     /// Orthonormal directions that the parameters can move the model in, and the residual: `n_directions + 1` per row.
     rows: Vec<f64>,
     n_directions: usize,
-    blocks: Vec<std::ops::Range<usize>>,
+    blocks: Vec<Range<usize>>,
     fold_of_block: Vec<usize>,
     counts: Vec<f64>,
     counted: Vec<bool>,
@@ -245,51 +253,98 @@ impl Remainder {
 
     /// What `features` together say of the residual; none of them gives the residual after the tangent space alone.
     pub fn structure(&self, features: &[&Feature]) -> Option<Structure> {
+        let products = self.all_products(features);
+        let every: Vec<usize> = (0..products.width).collect();
+        self.said(features, &products, &every)
+    }
+
+    /// What the fewest neighboring functions of `feature` say that together gain nearly as much as all of them; functions of
+    /// one coordinate only. What the base parameters took of a mismatch in one place lies about everywhere else; without
+    /// functions there, it goes back to where it came from.
+    pub fn narrowest(&self, feature: &Feature) -> Option<Structure> {
+        let products = self.all_products(&[feature]);
         let q = self.n_directions;
-        let n_hats: usize = features.iter().map(|feature| feature.n).sum();
-        let width = q + n_hats + 1;
-        let products: Vec<DMatrix<f64>> =
+        let kept = |window: &Range<usize>| -> Vec<usize> {
+            (0..q).chain(q + window.start..q + window.end).chain([products.width - 1]).collect()
+        };
+        let left = |window: &Range<usize>| {
+            self.held_out(&products, &kept(window)).map_or(f64::INFINITY, |held_out| held_out.mean_square())
+        };
+        let (nothing, all) = (left(&(0..0)), left(&(0..feature.n)));
+        let most = all + LOST * (nothing - all);
+        let mut window = 0..feature.n;
+        while window.len() > 1 {
+            let shorter = [window.start + 1..window.end, window.start..window.end - 1];
+            let [from_below, from_above] = shorter.each_ref().map(&left);
+            if from_below.min(from_above) > most {
+                break;
+            }
+            let [above, below] = shorter;
+            window = if from_below < from_above { above } else { below };
+        }
+        self.said(&[feature], &products, &kept(&window))
+    }
+
+    fn all_products(&self, features: &[&Feature]) -> Products {
+        let width = self.n_directions + features.iter().map(|feature| feature.n).sum::<usize>() + 1;
+        let blocks: Vec<DMatrix<f64>> =
             self.blocks.par_iter().map(|block| self.products(block.clone(), features, width)).collect();
         let mut total = DMatrix::zeros(width, width);
-        for product in &products {
-            total += product;
+        for block in &blocks {
+            total += block;
         }
-        let solve = |sum: &DMatrix<f64>| -> Option<DVector<f64>> {
-            let mut left = sum.view((0, 0), (width - 1, width - 1)).into_owned();
-            for index in 0..width - 1 {
-                left[(index, index)] += if index < q { 1e-6 } else { RIDGE };
+        let without_fold = (0..FOLDS).into_par_iter().map(|fold| {
+            let mut sum = total.clone();
+            for (_, block) in blocks.iter().enumerate().filter(|&(block, _)| self.fold_of_block[block] == fold) {
+                sum -= block;
             }
-            let right = sum.view((0, width - 1), (width - 1, 1)).into_owned();
-            Some(left.cholesky()?.solve(&right).column(0).into_owned())
-        };
-        let folds: Option<Vec<DVector<f64>>> = (0..FOLDS)
-            .into_par_iter()
-            .map(|fold| {
-                let mut sum = total.clone();
-                for (block, product) in products.iter().enumerate() {
-                    if self.fold_of_block[block] == fold {
-                        sum -= product;
-                    }
-                }
-                solve(&sum)
-            })
+            sum
+        });
+        Products { without_fold: without_fold.collect(), blocks, total, width }
+    }
+
+    /// Coefficients of the columns `kept`, the last of which is the residual, from the sums of some rows.
+    fn solve(&self, sum: &DMatrix<f64>, kept: &[usize]) -> Option<DVector<f64>> {
+        let (&residual, columns) = kept.split_last()?;
+        let mut left = sum.select_columns(columns).select_rows(columns);
+        for (index, &column) in columns.iter().enumerate() {
+            left[(index, index)] += if column < self.n_directions { 1e-6 } else { RIDGE };
+        }
+        let right = DVector::from_iterator(columns.len(), columns.iter().map(|&column| sum[(column, residual)]));
+        Some(left.cholesky()?.solve(&right))
+    }
+
+    /// Mean squares that the columns `kept` leave of every block, fitted to all but its fold.
+    fn held_out(&self, products: &Products, kept: &[usize]) -> Option<HeldOut> {
+        let folds: Option<Vec<DVector<f64>>> = products
+            .without_fold
+            .par_iter()
+            .map(|sum| self.solve(sum, kept).map(|coefficients| coefficients.push(-1.0)))
             .collect();
         let folds = folds?;
         let blocks = products
+            .blocks
             .iter()
             .enumerate()
             .map(|(block, product)| {
-                let mut u = folds[self.fold_of_block[block]].clone().insert_row(width - 1, -1.0);
-                u = product.transpose() * &u;
                 let coefficients = &folds[self.fold_of_block[block]];
-                let inner: f64 = coefficients.iter().zip(u.iter()).map(|(a, b)| a * b).sum::<f64>() - u[width - 1];
-                inner.max(0.0) / self.counts[block].max(1.0)
+                let product = product.select_columns(kept).select_rows(kept);
+                (coefficients.dot(&(product * coefficients))).max(0.0) / self.counts[block].max(1.0)
             })
             .collect();
-        let coefficients = solve(&total)?;
+        Some(HeldOut { blocks, counts: self.counts.clone() })
+    }
+
+    /// What the columns `kept` say, held out and at every instant.
+    fn said(&self, features: &[&Feature], products: &Products, kept: &[usize]) -> Option<Structure> {
+        let held_out = self.held_out(products, kept)?;
+        let mut coefficients = vec![0.0; products.width];
+        for (&column, value) in kept.iter().zip(self.solve(&products.total, kept)?.iter()) {
+            coefficients[column] = *value;
+        }
         let values_n = (0..self.counted.len())
             .map(|at| {
-                let mut offset = q;
+                let mut offset = self.n_directions;
                 let mut sum = 0.0;
                 for feature in features {
                     for (index, value) in feature.entries[at] {
@@ -300,10 +355,10 @@ impl Remainder {
                 sum
             })
             .collect();
-        Some(Structure { held_out: HeldOut { blocks, counts: self.counts.clone() }, values_n })
+        Some(Structure { held_out, values_n })
     }
 
-    fn products(&self, block: std::ops::Range<usize>, features: &[&Feature], width: usize) -> DMatrix<f64> {
+    fn products(&self, block: Range<usize>, features: &[&Feature], width: usize) -> DMatrix<f64> {
         let q = self.n_directions;
         let mut sums = vec![0.0; width * width];
         let mut row: Vec<(usize, f64)> = Vec::with_capacity(q + 4 * features.len() + 1);
@@ -336,5 +391,43 @@ impl Remainder {
             }
         }
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_parameter_took_of_a_mismatch_goes_back_to_its_place() {
+        const N: usize = 4000;
+        const BLOCKS: usize = 20;
+        let values: Vec<f64> = (0..N).map(|at| (at * 37 % N) as f64 / N as f64).collect();
+        let bump = |value: f64| if (0.4..0.6).contains(&value) { 1.0 } else { 0.0 };
+        let mean = values.iter().map(|value| bump(*value)).sum::<f64>() / N as f64;
+        // One parameter, a constant, which has taken the mean.
+        let rows = values.iter().flat_map(|value| [1.0 / (N as f64).sqrt(), bump(*value) - mean]).collect();
+        let each = N / BLOCKS;
+        let remainder = Remainder {
+            rows,
+            n_directions: 1,
+            blocks: (0..BLOCKS).map(|block| block * each..(block + 1) * each).collect(),
+            fold_of_block: (0..BLOCKS).map(|block| block % FOLDS).collect(),
+            counts: vec![each as f64; BLOCKS],
+            counted: vec![true; N],
+        };
+        let knots: Vec<f64> = (0..=20).map(|knot| f64::from(knot) / 20.0).collect();
+        let feature = over(&values, knots, Coordinate::Contraction, None);
+        let beyond = |structure: &Structure| {
+            let far = values.iter().zip(&structure.values_n).filter(|(value, _)| !(0.35..0.65).contains(*value));
+            far.map(|(_, value_n)| value_n.abs()).fold(0.0, f64::max)
+        };
+        let all = remainder.structure(&[&feature]).unwrap();
+        let narrow = remainder.narrowest(&feature).unwrap();
+        assert!(beyond(&all) > 0.1, "{}", beyond(&all));
+        assert!(beyond(&narrow) < 1e-9, "{}", beyond(&narrow));
+        let middle = values.iter().position(|value| *value == 0.5).unwrap();
+        // Less what the ridge takes of 133 instants.
+        assert!((0.85..1.05).contains(&narrow.values_n[middle]), "{}", narrow.values_n[middle]);
     }
 }
