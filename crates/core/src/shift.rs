@@ -7,6 +7,12 @@ use crate::motion::Instant;
 /// later: what a channel that is late by that much should have said. Between instants a cubic through values and slopes.
 pub fn shifted(instants: &[Instant], delays_s: [f64; 2]) -> Vec<Moment> {
     let mut moments: Vec<Moment> = instants.iter().map(|instant| instant.moment).collect();
+    shift(&mut moments, instants, delays_s);
+    moments
+}
+
+/// The same in place: `moments` are those of `instants`.
+pub fn shift(moments: &mut [Moment], instants: &[Instant], delays_s: [f64; 2]) {
     let [pressure_s, length_s] = delays_s;
     if pressure_s != 0.0 {
         for (at, moment) in moments.iter_mut().enumerate() {
@@ -43,7 +49,6 @@ pub fn shifted(instants: &[Instant], delays_s: [f64; 2]) -> Vec<Moment> {
             moment.direction = if share < 0.5 { left.direction } else { right.direction };
         }
     }
-    moments
 }
 
 /// The moments around the time of instant `at` plus `delay_s`, and how far between them it lies; none where a gap or an

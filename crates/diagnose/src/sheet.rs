@@ -1,5 +1,7 @@
 //! What a hypothesis makes of the track: moments in the muscle, columns of eq. 11, columns of the effects.
 
+use std::ops::Range;
+
 use pam_core::effects::{Base, Memory, Moment, Role};
 use pam_core::force::ForceModel;
 use pam_core::force::columns::{FRICTION, ForceColumns, N_COLUMNS};
@@ -7,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::hypothesis::{Guess, n_amplitudes};
 use crate::track::Track;
-use pam_core::shift::shifted;
+use pam_core::shift::shift;
 
 /// Rows of a hypothesis.
 #[derive(Debug, Clone)]
@@ -45,45 +47,43 @@ impl Ground<'_> {
     /// The rows of `guesses`; what effects need of the base comes from `model`.
     pub fn sheet(&self, guesses: &[Guess], model: &ForceModel) -> Sheet {
         let width = N_COLUMNS + n_amplitudes(guesses);
-        let parts: Vec<Sheet> = self
-            .track
-            .recordings
-            .par_iter()
-            .map(|range| self.recording_sheet(range.clone(), guesses, model, width))
-            .collect();
         let n = self.track.n();
         let mut sheet = Sheet {
-            seen: Vec::with_capacity(n),
-            base: Vec::with_capacity(n),
-            columns: Vec::with_capacity(n * width),
+            seen: self.track.instants.iter().map(|instant| instant.moment).collect(),
+            base: vec![Base::default(); n],
+            columns: vec![0.0; n * width],
             width,
         };
-        for part in parts {
-            sheet.seen.extend(part.seen);
-            sheet.base.extend(part.base);
-            sheet.columns.extend(part.columns);
-        }
+        let Sheet { seen, base, columns, .. } = &mut sheet;
+        let (mut seen, mut base, mut columns) = (&mut seen[..], &mut base[..], &mut columns[..]);
+        let parts: Vec<_> = self
+            .track
+            .recordings
+            .iter()
+            .map(|range| Part {
+                range: range.clone(),
+                seen: split_off(&mut seen, range.len()),
+                base: split_off(&mut base, range.len()),
+                columns: split_off(&mut columns, range.len() * width),
+            })
+            .collect();
+        parts.into_par_iter().for_each(|part| self.fill(part, guesses, model));
         sheet
     }
 
-    fn recording_sheet(
-        &self,
-        range: std::ops::Range<usize>,
-        guesses: &[Guess],
-        model: &ForceModel,
-        width: usize,
-    ) -> Sheet {
-        let instants = &self.track.instants[range.clone()];
+    fn fill(&self, part: Part<'_>, guesses: &[Guess], model: &ForceModel) {
+        let Part { range, seen, base, columns } = part;
         let mut delays_s = [0.0; 2];
         for guess in guesses.iter().filter(|guess| guess.effect.role() == Role::Shift) {
             let more_s = guess.effect.delays_s(&guess.shape);
             delays_s = [delays_s[0] + more_s[0], delays_s[1] + more_s[1]];
         }
-        let mut seen = shifted(instants, delays_s);
+        shift(seen, &self.track.instants[range.clone()], delays_s);
         let mut memories = start(guesses, model);
-        let mut columns = vec![0.0; seen.len() * width];
-        let mut base = Vec::with_capacity(seen.len());
-        for ((now, row), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width)).zip(range) {
+        let mut last = None;
+        let width = columns.len() / seen.len().max(1);
+        for (((now, row), here), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width.max(1))).zip(base).zip(range)
+        {
             let wanted = self.only.is_none_or(|only| only[at]);
             let mut slide = now.direction;
             for (guess, memory) in guesses.iter().zip(&mut memories) {
@@ -100,21 +100,20 @@ impl Ground<'_> {
                 }
             }
             // Between the wanted instants what the base was at the last one will do.
-            let here = match base.last() {
-                Some(&last) if !wanted => last,
+            *here = match last {
+                Some(last) if !wanted => last,
                 _ => Base::of(model, now.pressure_pa, now.length_m),
             };
+            last = Some(*here);
             let mut at = N_COLUMNS;
             for (guess, memory) in guesses.iter().zip(&mut memories) {
                 let n = guess.amplitudes().len();
                 if guess.only_adds() {
-                    memory.pulls(now, &here, &mut row[at..at + n]);
+                    memory.pulls(now, here, &mut row[at..at + n]);
                 }
                 at += n;
             }
-            base.push(here);
         }
-        Sheet { seen, base, columns, width }
     }
 
     /// Columns of one more guess that only adds, over the moments of `sheet`, row-major.
@@ -129,6 +128,19 @@ impl Ground<'_> {
         }
         columns
     }
+}
+
+/// Rows of one recording.
+struct Part<'a> {
+    range: Range<usize>,
+    seen: &'a mut [Moment],
+    base: &'a mut [Base],
+    columns: &'a mut [f64],
+}
+
+/// The first `n` of `slice`, which keeps the others.
+fn split_off<'a, T>(slice: &mut &'a mut [T], n: usize) -> &'a mut [T] {
+    slice.split_off_mut(..n).unwrap_or_default()
 }
 
 fn start(guesses: &[Guess], model: &ForceModel) -> Vec<Box<dyn Memory>> {
