@@ -83,6 +83,12 @@ impl Samples {
         self.targets.len()
     }
 
+    /// The first `n`; all where there are fewer.
+    pub fn first(&self, n: usize) -> Self {
+        let n = n.min(self.len());
+        Self { inputs: self.inputs[..n].to_vec(), targets: self.targets[..n].to_vec() }
+    }
+
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.targets.is_empty()

@@ -11,6 +11,17 @@ use crate::normal_equations::cost;
 use crate::samples::Samples;
 use crate::stream::Stream;
 
+/// Points that a descent begins with, for each parameter of the network: the first of a sequence that leaves no gaps leave
+/// none themselves, and an epoch takes as long as it has points.
+const FIRST_PER_PARAMETER: usize = 2;
+
+/// Error of all points over that of those that a descent goes by, above which it is given twice as many: they are being
+/// learnt by heart.
+const BY_HEART: f64 = 1.5;
+
+/// Share of the cost that an epoch has to take off, or the descent is given twice as many: it is no longer finding its way.
+const SLOW: f64 = 0.05;
+
 /// What trains well, by method.
 pub fn defaults(method: Method) -> TrainConfig {
     let descent = method == Method::Backpropagation;
@@ -95,6 +106,48 @@ pub fn train(
     Ok(Trained { network, starts, chosen, training_rmse, validation_rmse })
 }
 
+/// A descent that begins with a few of the points.
+struct Growing<'a> {
+    descent: LevenbergMarquardt,
+    training: &'a Samples,
+    few: Samples,
+    /// Cost of the few after the epoch before.
+    cost: f64,
+}
+
+impl<'a> Growing<'a> {
+    fn new(training: &'a Samples, n_parameters: usize) -> Self {
+        let few = training.first(FIRST_PER_PARAMETER * n_parameters);
+        Self { descent: LevenbergMarquardt::default(), training, few, cost: f64::INFINITY }
+    }
+
+    /// One epoch; the cost it comes to is that of all points.
+    fn epoch(&mut self, network: &mut Network) -> Step {
+        let step = self.descent.epoch(network, &self.few);
+        let (n_few, n_all) = (self.few.len(), self.training.len());
+        if n_few == n_all {
+            return step;
+        }
+        let of_all = cost(network, self.training);
+        let grows = match step {
+            Step::Lower(of_few) => {
+                let slow = of_few > (1.0 - SLOW) * self.cost;
+                self.cost = of_few;
+                slow || of_all / n_all as f64 > BY_HEART * BY_HEART * of_few / n_few as f64
+            }
+            Step::Stuck => {
+                self.descent = LevenbergMarquardt::default();
+                true
+            }
+        };
+        if grows {
+            self.few = self.training.first(2 * n_few);
+            self.cost = f64::INFINITY;
+        }
+        Step::Lower(of_all)
+    }
+}
+
 #[expect(clippy::too_many_arguments, reason = "one call, right above")]
 fn run(
     training: &Samples,
@@ -109,7 +162,7 @@ fn run(
     let mut activations = vec![config.hidden_activation; config.hidden.len()];
     activations.push(config.output_activation);
     let mut network = Network::initial(layers, &activations, &mut Stream::Weights(start).random(seed));
-    let mut descent = LevenbergMarquardt::default();
+    let mut descent = Growing::new(training, network.parameters().len());
     let random = Stream::Order(start).random(seed);
     let mut printed = Backpropagation::new(config.learning_rate, config.update, training.len(), random);
     let rmse = |cost: f64, samples: &Samples| (2.0 * cost / samples.len() as f64).sqrt();
@@ -120,7 +173,7 @@ fn run(
     let mut ended = Ended::EpochsUsedUp;
     for epoch in 1..=config.n_epochs {
         let (training_cost, stuck) = match config.method {
-            Method::LevenbergMarquardt => match descent.epoch(&mut network, training) {
+            Method::LevenbergMarquardt => match descent.epoch(&mut network) {
                 Step::Lower(cost) => (cost, false),
                 Step::Stuck => (f64::NAN, true),
             },
@@ -154,4 +207,31 @@ fn run(
     let n_epochs = training_rmse.len() - 1;
     let report = StartReport { n_epochs, best_epoch, validation_rmse_pa: error * scale_pa, ended };
     Run { network, report, training_rmse, validation_rmse }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backpropagation::tests::{network, saddle};
+
+    #[test]
+    fn a_descent_that_begins_with_a_few_points_ends_with_all_and_as_low() {
+        // More than a network of this size can follow: the first points could only be learnt by heart.
+        let mut samples = saddle(1000);
+        for (index, target) in samples.targets.iter_mut().enumerate() {
+            *target += 0.05 * (1e3 * index as f64).sin();
+        }
+        let begin = network(Activation::Tanh, Activation::Linear);
+        let mut growing = Growing::new(&samples, begin.parameters().len());
+        assert_eq!(growing.few.len(), 2 * (3 * 8 + 8 + 8 + 1));
+        let (mut few, mut all) = (begin.clone(), begin);
+        let mut whole = LevenbergMarquardt::default();
+        for _ in 0..100 {
+            whole.epoch(&mut all, &samples);
+            growing.epoch(&mut few);
+        }
+        assert_eq!(growing.few.len(), samples.len());
+        let (few, all) = (cost(&few, &samples), cost(&all, &samples));
+        assert!(few < 1.05 * all, "{few} {all}");
+    }
 }
