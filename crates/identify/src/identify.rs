@@ -206,11 +206,11 @@ impl Checked {
         let (space, unidentifiable) = self.search_space(&columns, &condensed, force_noise_n);
         let column_floor_rmse_n =
             (condensed.total.residual_floor_square_sum() / condensed.total.n_rows() as f64).sqrt();
-        let fit = search(
-            &ForceProblem { summary: &condensed.total, columns: &columns, space: &space, steps: &[] },
-            &self.options,
-            observe,
-        );
+        let problem = ForceProblem { summary: &condensed.total, columns: &columns, space: &space, steps: &[] };
+        let (fit, lags) =
+            rayon::join(|| search(&problem, &self.options, observe), || faults::lag::find(&estimation, &columns));
+        let lags =
+            lags.map_err(|reason| IdentifyError::Samples { path: estimation[0].recording.path.clone(), reason })?;
         let found = self.settle(&estimation, columns.clone(), condensed.clone(), &space, fit, largest_n_per_m)?;
         let problem = ForceProblem {
             summary: &found.condensed.total,
@@ -224,8 +224,6 @@ impl Checked {
         let validation_fit = evaluate(&validation, &model)?;
         let noise_floor_n = noise_floor_n(&estimation, &model)?;
         let unbounded = if self.unbounded { unbounded_fit(&columns, &condensed, &validation)? } else { None };
-        let lags = faults::lag::find(&estimation, &columns)
-            .map_err(|reason| IdentifyError::Samples { path: estimation[0].recording.path.clone(), reason })?;
         let mut identified = Identified {
             muscle: found.muscle,
             model,

@@ -2,6 +2,7 @@
 
 use std::io;
 
+use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -58,10 +59,12 @@ impl RecordingQuality {
             }
         }
         let sample = Sample::of(recording)?;
-        let mut channels = Vec::new();
-        for (index, column) in columns.iter().enumerate() {
-            channels.push(channel(recording, index, *column, extremes[index], &sample)?);
-        }
+        let channels: io::Result<Vec<ChannelQuality>> = columns
+            .par_iter()
+            .enumerate()
+            .map(|(index, column)| channel(recording, index, *column, extremes[index], &sample))
+            .collect();
+        let channels = channels?;
         let noise = |index: usize| channels[index].noise;
         Ok(Self {
             path: recording.path.clone(),

@@ -27,6 +27,8 @@ pub(super) struct Body {
     last_s: f64,
     /// Rows whose stamps are not final, column by column.
     pending: [Vec<f64>; MAX_COLUMNS],
+    /// Columns up to the last that is there.
+    n_columns: usize,
     /// Pending rows at which the next attempt at their stamps is made.
     attempt_rows: usize,
     stamps: StampRepair,
@@ -39,8 +41,8 @@ pub(super) struct Body {
 impl Body {
     pub(super) fn new(parser: RowParser, options: &ReadOptions) -> Self {
         let plan = parser.plan();
-        let samples =
-            SamplesBuilder::new(plan.has(Quantity::Force), plan.has(Quantity::Temperature), options.memory_rows);
+        let plan_has_temperature = plan.has(Quantity::Temperature);
+        let samples = SamplesBuilder::new(plan.has(Quantity::Force), plan_has_temperature, options.memory_rows);
         Self {
             parser,
             skip_bad_rows: options.skip_bad_rows,
@@ -51,7 +53,8 @@ impl Body {
             repairs: Repairs::default(),
             blank_lines: 0,
             last_s: f64::NEG_INFINITY,
-            pending: Default::default(),
+            pending: std::array::from_fn(|_| Vec::with_capacity(CHUNK_ROWS)),
+            n_columns: if plan_has_temperature { MAX_COLUMNS } else { MAX_COLUMNS - 1 },
             attempt_rows: CHUNK_ROWS,
             stamps: StampRepair::default(),
             samples,
@@ -103,7 +106,7 @@ impl Body {
     fn keep(&mut self, channels: Channels) -> Result<(), Refusal> {
         let first = self.first.get_or_insert(channels);
         self.force_varies |= channels[Quantity::Force as usize] != first[Quantity::Force as usize];
-        for (column, value) in self.pending.iter_mut().zip(channels) {
+        for (column, value) in self.pending[..self.n_columns].iter_mut().zip(channels) {
             column.push(value);
         }
         if self.pending[0].len() >= self.attempt_rows {
@@ -129,7 +132,7 @@ impl Body {
             }
         }
         self.samples.extend(columns).map_err(spill_refusal)?;
-        for pending in &mut self.pending {
+        for pending in &mut self.pending[..self.n_columns] {
             pending.drain(..settled.n_rows);
         }
         Ok(())

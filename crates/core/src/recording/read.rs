@@ -141,7 +141,9 @@ fn pieces(text: &[u8]) -> Vec<&[u8]> {
 
 /// What each line of `text` holds.
 fn lines_of(parser: &mut RowParser, text: &[u8]) -> Vec<Line> {
-    let mut lines = Vec::new();
+    // As many as there are lines as short as the first.
+    let first = memchr::memchr(b'\n', text).map_or(text.len(), |end| end + 1);
+    let mut lines = Vec::with_capacity(text.len() / first.max(1) + 1);
     let mut rest = text;
     while !rest.is_empty() {
         let (line, length) = parser.read(rest);

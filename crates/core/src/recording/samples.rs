@@ -26,7 +26,7 @@ pub(crate) const MAX_COLUMNS: usize = 5;
 pub struct Samples {
     n_rows: usize,
     layout: Layout,
-    in_memory: Vec<Arc<[f64]>>,
+    in_memory: Vec<Arc<Vec<f64>>>,
     spilled: Option<Spill>,
 }
 
@@ -97,7 +97,7 @@ impl Samples {
         let data = match (self.in_memory.get(index), &self.spilled) {
             (Some(data), _) => Arc::clone(data),
             (None, Some(spilled)) if index < self.n_chunks() => {
-                spilled.read(index - self.in_memory.len(), rows.len() * self.layout.n_columns())?
+                Arc::new(spilled.read(index - self.in_memory.len(), rows.len() * self.layout.n_columns())?)
             }
             _ => panic!("chunk {index} of {}", self.n_chunks()),
         };
@@ -113,7 +113,7 @@ impl Samples {
 /// Consecutive rows of a recording, column by column.
 #[derive(Debug, Clone)]
 pub struct Chunk {
-    data: Arc<[f64]>,
+    data: Arc<Vec<f64>>,
     layout: Layout,
     first_row: usize,
     n_rows: usize,
@@ -178,7 +178,9 @@ pub(crate) struct SamplesBuilder {
     samples: Samples,
     memory_rows: usize,
     directory: PathBuf,
-    open: [Vec<f64>; MAX_COLUMNS],
+    /// The chunk that is being filled, column by column, each as long as a whole one; empty before its first row.
+    open: Vec<f64>,
+    open_rows: usize,
 }
 
 impl SamplesBuilder {
@@ -193,7 +195,8 @@ impl SamplesBuilder {
             },
             memory_rows,
             directory: std::env::temp_dir(),
-            open: Default::default(),
+            open: Vec::new(),
+            open_rows: 0,
         }
     }
 
@@ -207,15 +210,18 @@ impl SamplesBuilder {
         let n_rows = columns[0].len();
         let mut done = 0;
         while done < n_rows {
-            let take = (CHUNK_ROWS - self.open[0].len()).min(n_rows - done);
-            for (open, column) in self.open.iter_mut().zip(columns) {
-                if !column.is_empty() {
-                    open.extend_from_slice(&column[done..done + take]);
-                }
+            let take = (CHUNK_ROWS - self.open_rows).min(n_rows - done);
+            if self.open.is_empty() {
+                self.open = vec![0.0; CHUNK_ROWS * self.samples.layout.n_columns()];
+            }
+            let present = columns.iter().filter(|column| !column.is_empty());
+            for (open, column) in self.open.chunks_exact_mut(CHUNK_ROWS).zip(present) {
+                open[self.open_rows..][..take].copy_from_slice(&column[done..done + take]);
             }
             done += take;
+            self.open_rows += take;
             self.samples.n_rows += take;
-            if self.open[0].len() == CHUNK_ROWS {
+            if self.open_rows == CHUNK_ROWS {
                 self.close_chunk()?;
             }
         }
@@ -224,14 +230,14 @@ impl SamplesBuilder {
 
     /// The samples.
     pub(crate) fn finish(mut self) -> Result<Samples, SpillFailed> {
-        if !self.open[0].is_empty() {
+        if self.open_rows > 0 {
             self.close_chunk()?;
         }
         Ok(self.samples)
     }
 
     fn finish_in_memory(mut self) -> Samples {
-        if !self.open[0].is_empty() {
+        if self.open_rows > 0 {
             let data = self.take_open();
             self.samples.in_memory.push(data);
         }
@@ -256,13 +262,13 @@ impl SamplesBuilder {
         }
     }
 
-    fn take_open(&mut self) -> Arc<[f64]> {
-        let mut data = Vec::with_capacity(self.open[0].len() * self.samples.layout.n_columns());
-        for column in &mut self.open {
-            data.extend_from_slice(column);
-            column.clear();
+    fn take_open(&mut self) -> Arc<Vec<f64>> {
+        let (mut data, rows) = (std::mem::take(&mut self.open), std::mem::take(&mut self.open_rows));
+        for column in 1..self.samples.layout.n_columns() {
+            data.copy_within(column * CHUNK_ROWS..column * CHUNK_ROWS + rows, column * rows);
         }
-        data.into()
+        data.truncate(rows * self.samples.layout.n_columns());
+        Arc::new(data)
     }
 }
 

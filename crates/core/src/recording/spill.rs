@@ -3,7 +3,6 @@
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
-use std::sync::Arc;
 
 /// The file; the system removes it with the last handle, also after a crash.
 #[derive(Debug)]
@@ -35,7 +34,7 @@ impl Spill {
     }
 
     /// Reads `len` numbers of chunk `index`.
-    pub(crate) fn read(&self, index: usize, len: usize) -> io::Result<Arc<[f64]>> {
+    pub(crate) fn read(&self, index: usize, len: usize) -> io::Result<Vec<f64>> {
         let mut bytes = vec![0; len * 8];
         self.read_at(&mut bytes, (index * self.chunk_len * 8) as u64)?;
         let (numbers, _) = bytes.as_chunks::<8>();
