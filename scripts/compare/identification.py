@@ -49,7 +49,8 @@ def compare(programs, scratch, quick, seed):
     runs = {name: [] for name in [*VARIANTS, *solvers]}
     checks = []
     for repetition in range(1 if quick else 3):
-        for _ in range(3):
+        # Some twenty milliseconds each: three would be at the mercy of whatever else runs.
+        for _ in range(9):
             for name, options in VARIANTS.items():
                 before = processor_s()
                 whole, _ = run([*fit, *options, "--seed", repetition + 1, "--out", model_path], scratch)
