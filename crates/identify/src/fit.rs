@@ -63,6 +63,8 @@ pub struct Fit {
 /// Tells when a swarm that a descent follows has done its work: it has found the valley, and the descent finds its
 /// bottom in a handful of steps.
 struct Patience {
+    /// No parameters do better than this.
+    floor: f64,
     lowest_cost: f64,
     moves_since: usize,
 }
@@ -72,19 +74,21 @@ impl Patience {
     const MOVES: usize = 20;
     /// of this share of the cost.
     const GAIN: f64 = 1e-3;
+    /// Cost over the floor at which no other valley can be deeper by more than a hundredth.
+    const NEAR_FLOOR: f64 = 1.01;
 
-    fn new() -> Self {
-        Self { lowest_cost: f64::INFINITY, moves_since: 0 }
+    fn new(floor: f64) -> Self {
+        Self { floor, lowest_cost: f64::INFINITY, moves_since: 0 }
     }
 
     /// Whether it ends after a move that left the best cost at `cost`.
     fn ends(&mut self, cost: f64) -> bool {
         if cost < (1.0 - Self::GAIN) * self.lowest_cost {
-            *self = Self { lowest_cost: cost, moves_since: 0 };
+            (self.lowest_cost, self.moves_since) = (cost, 0);
         } else {
             self.moves_since += 1;
         }
-        self.moves_since >= Self::MOVES
+        self.moves_since >= Self::MOVES || cost <= Self::NEAR_FLOOR * self.floor
     }
 }
 
@@ -101,7 +105,7 @@ pub fn search(problem: &ForceProblem<'_>, options: &FitOptions, observe: &(dyn F
                 seed: options.seed,
                 start,
             };
-            let mut patience = Patience::new();
+            let mut patience = Patience::new(problem.floor_mean_square());
             let swarm = minimize(
                 problem.n_parameters(),
                 axes.as_ref(),
@@ -145,11 +149,17 @@ mod tests {
 
     #[test]
     fn patience_outlasts_gains_and_ends_without_them() {
-        let mut patience = Patience::new();
+        let mut patience = Patience::new(0.0);
         // 1 % less with every tenth move.
         let cost = |index: i32| 0.99_f64.powi(index / 10);
         assert!((0..200).all(|index| !patience.ends(cost(index))));
         // Nine moves since the last gain.
         assert_eq!((1..).find(|_| patience.ends(cost(199))), Some(Patience::MOVES - 9));
+    }
+    #[test]
+    fn patience_ends_where_nothing_can_be_gained() {
+        let mut patience = Patience::new(0.5);
+        assert!(!patience.ends(0.51));
+        assert!(patience.ends(0.504));
     }
 }

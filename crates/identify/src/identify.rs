@@ -204,9 +204,8 @@ impl Checked {
         let condensed = condense(&estimation, &columns, 1, None)?;
         enough(&estimation[0].recording.path, condensed.total.n_rows() as usize)?;
         let (space, unidentifiable) = self.search_space(&columns, &condensed, force_noise_n);
-        let column_floor_rmse_n =
-            (condensed.total.residual_floor_square_sum() / condensed.total.n_rows() as f64).sqrt();
         let problem = ForceProblem { summary: &condensed.total, columns: &columns, space: &space, steps: &[] };
+        let column_floor_rmse_n = problem.floor_mean_square().sqrt();
         let (fit, lags) =
             rayon::join(|| search(&problem, &self.options, observe), || faults::lag::find(&estimation, &columns));
         let lags =

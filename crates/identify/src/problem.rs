@@ -67,6 +67,11 @@ impl ForceProblem<'_> {
         }
     }
 
+    /// What weights without bounds leave, in N²: no parameters leave less.
+    pub fn floor_mean_square(&self) -> f64 {
+        self.summary.residual_floor_square_sum() / self.n_rows()
+    }
+
     fn n_rows(&self) -> f64 {
         self.summary.n_rows().max(1) as f64
     }
