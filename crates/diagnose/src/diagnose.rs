@@ -19,7 +19,7 @@ use crate::joint::HeldOut;
 use crate::knocks::{self, Knocks};
 use crate::next_experiment::{Setpoints, next_experiment};
 use crate::question::{Answer, Question};
-use crate::regions::concentrated;
+use crate::regions::{Place, concentrated};
 use crate::search::{Found, Limits, chance};
 use crate::state::Setting;
 use crate::structure::Remainder;
@@ -154,7 +154,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         regions.insert(if effects[0].id == knocks::ID { 0 } else { regions.len() }, knocks.region(sizes.mismatch_n));
     }
     let unexplained = if verdict == Verdict::Unexplained {
-        structured(&setting, &found.best.state, &found, &paths)
+        telling(structured(&setting, &found.best.state, &found, &paths), &[])
     } else {
         Vec::new()
     };
@@ -320,25 +320,31 @@ fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) -> Vec<Region
                 (chance(&taken.without, &found.best.held_out) * found.first.len() as f64).min(1.0),
             )
         });
-        if let Some(region) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
-            regions.push((log_ratio, region));
+        if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
+            regions.push((log_ratio, place.region));
         }
     }
     regions.sort_by(|left, right| right.0.total_cmp(&left.0));
     let mut out: Vec<Region> = regions.into_iter().map(|(_, region)| region).collect();
-    for region in structured(setting, &found.base.state, found, paths) {
-        if out.iter().all(|known| known.coordinate != region.coordinate) {
-            out.push(region);
-        }
-    }
+    let known: Vec<Coordinate> = out.iter().map(|region| region.coordinate).collect();
+    out.extend(telling(structured(setting, &found.base.state, found, paths), &known));
     out
 }
 
+/// Those of `places`, the most telling first, over none of the coordinates `known`; what is everywhere only where there is
+/// nothing before it.
+fn telling(places: Vec<Place>, known: &[Coordinate]) -> Vec<Region> {
+    let news = places.into_iter().filter(|place| !known.contains(&place.region.coordinate)).enumerate();
+    news.filter(|(index, place)| !place.is_everywhere || (*index == 0 && known.is_empty()))
+        .map(|(_, place)| place.region)
+        .collect()
+}
+
 /// Coordinates over which the residual of a state is structured, the most telling first.
-fn structured(setting: &Setting<'_>, state: &crate::state::State, found: &Found, paths: &[String]) -> Vec<Region> {
+fn structured(setting: &Setting<'_>, state: &crate::state::State, found: &Found, paths: &[String]) -> Vec<Place> {
     let remainder = Remainder::of(setting, state);
     let Some(nothing) = remainder.structure(&[]) else { return Vec::new() };
-    let mut telling: Vec<(f64, Region)> = Vec::new();
+    let mut telling: Vec<(f64, Place)> = Vec::new();
     for coordinate in Coordinate::ALL {
         let best = found
             .features
@@ -354,12 +360,12 @@ fn structured(setting: &Setting<'_>, state: &crate::state::State, found: &Found,
         let excess: Vec<f64> = structure.values_n.iter().map(|value| value * value).collect();
         let looks = found.features.len() as f64;
         let p_value = (chance(&nothing.held_out, &structure.held_out) * looks).min(1.0);
-        if let Some(region) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
-            telling.push((gain, region));
+        if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
+            telling.push((gain, place));
         }
     }
     telling.sort_by(|left, right| right.0.total_cmp(&left.0));
-    telling.into_iter().map(|(_, region)| region).collect()
+    telling.into_iter().map(|(_, place)| place).collect()
 }
 
 /// Base parameters outside what is plausible, with everything that was named beside them.

@@ -13,6 +13,15 @@ const EDGE: f64 = 0.1;
 /// through zero.
 const BEHIND_A_DIP: f64 = 0.3;
 
+/// Where a mismatch lies over one coordinate.
+#[derive(Debug)]
+pub struct Place {
+    /// The interval.
+    pub region: Region,
+    /// Whether it is all of the coordinate, which says nothing.
+    pub is_everywhere: bool,
+}
+
 /// The interval of `coordinate` in which the mean of `excess` (in N² at every instant) is concentrated; none where there is
 /// no excess. Time is looked at one recording after the other.
 pub fn concentrated(
@@ -22,7 +31,7 @@ pub fn concentrated(
     excess: &[f64],
     p_value: f64,
     paths: &[String],
-) -> Option<Region> {
+) -> Option<Place> {
     let values = coordinates.of_kind(coordinate);
     let counted = &setting.track.counted;
     let all = 0..setting.track.n();
@@ -79,7 +88,7 @@ pub fn concentrated(
         last -= 1;
     }
     let total = sum(all, counted, excess);
-    Some(Region {
+    let region = Region {
         coordinate,
         from: edges[first],
         to: edges[last + 1],
@@ -91,7 +100,8 @@ pub fn concentrated(
         },
         p_value,
         recording: recording.and_then(|index| paths.get(index).cloned()),
-    })
+    };
+    Some(Place { region, is_everywhere: first == 0 && last + 1 == density.len() })
 }
 
 fn sum(range: std::ops::Range<usize>, counted: &[bool], excess: &[f64]) -> f64 {
