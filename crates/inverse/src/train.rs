@@ -17,7 +17,7 @@ const FIRST_PER_PARAMETER: usize = 2;
 
 /// Error of all points over that of those that a descent goes by, above which it is given twice as many: they are being
 /// learnt by heart.
-const BY_HEART: f64 = 1.5;
+const BY_HEART: f64 = 1.25;
 
 /// Share of the cost that an epoch has to take off, or the descent is given twice as many: it is no longer finding its way.
 const SLOW: f64 = 0.05;
