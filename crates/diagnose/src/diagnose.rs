@@ -344,7 +344,7 @@ fn telling(places: Vec<Place>, known: &[Coordinate]) -> Vec<Region> {
 fn structured(setting: &Setting<'_>, state: &crate::state::State, found: &Found, paths: &[String]) -> Vec<Place> {
     let remainder = Remainder::of(setting, state);
     let Some(nothing) = remainder.structure(&[]) else { return Vec::new() };
-    let mut telling: Vec<(f64, Place)> = Vec::new();
+    let mut places: Vec<(f64, Place)> = Vec::new();
     for coordinate in Coordinate::ALL {
         let best = found
             .features
@@ -361,11 +361,11 @@ fn structured(setting: &Setting<'_>, state: &crate::state::State, found: &Found,
         let looks = found.features.len() as f64;
         let p_value = (chance(&nothing.held_out, &structure.held_out) * looks).min(1.0);
         if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
-            telling.push((gain, place));
+            places.push((gain, place));
         }
     }
-    telling.sort_by(|left, right| right.0.total_cmp(&left.0));
-    telling.into_iter().map(|(_, place)| place).collect()
+    places.sort_by(|left, right| right.0.total_cmp(&left.0));
+    places.into_iter().map(|(_, place)| place).collect()
 }
 
 /// Base parameters outside what is plausible, with everything that was named beside them.

@@ -87,6 +87,8 @@ pub fn concentrated(
     while last > peak && counts[last] < fewest {
         last -= 1;
     }
+    let is_all_there_is = recording.is_none() || setting.track.recordings.len() == 1;
+    let is_everywhere = is_all_there_is && first == 0 && last + 1 == density.len();
     let total = sum(all, counted, excess);
     let region = Region {
         coordinate,
@@ -101,7 +103,7 @@ pub fn concentrated(
         p_value,
         recording: recording.and_then(|index| paths.get(index).cloned()),
     };
-    Some(Place { region, is_everywhere: first == 0 && last + 1 == density.len() })
+    Some(Place { region, is_everywhere })
 }
 
 fn sum(range: std::ops::Range<usize>, counted: &[bool], excess: &[f64]) -> f64 {

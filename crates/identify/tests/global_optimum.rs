@@ -64,8 +64,10 @@ fn every_seed_ends_at_the_optimum() {
     let results: Vec<(f64, f64)> = (1..=SEEDS)
         .into_par_iter()
         .map(|seed| {
-            let fit = search(&problem, &FitOptions { n_starts: 1, seed, ..FitOptions::default() }, &|| {});
-            (fit.starts[0].swarm.best_cost / optimum - 1.0, fit.mean_square / optimum - 1.0)
+            let options = FitOptions { n_starts: 1, seed, ..FitOptions::default() };
+            let alone = search(&problem, &FitOptions { polish: false, ..options }, &|| {});
+            let polished = search(&problem, &options, &|| {});
+            (alone.mean_square / optimum - 1.0, polished.mean_square / optimum - 1.0)
         })
         .collect();
     let swarms = results.iter().filter(|(swarm, _)| *swarm <= 1e-2).count();
