@@ -24,11 +24,11 @@ pub(crate) fn training(artifact: &InverseArtifact, time: Duration) -> String {
     }
     let layers: Vec<String> = artifact.layers.iter().map(ToString::to_string).collect();
     format!(
-        "Training of a {} network on {} points, {} more to decide when to stop, in {:.2} s\n{}",
+        "Training of a {} network on {} points, {} more to decide when to stop, in {} s\n{}",
         layers.join("-"),
         report.n_training,
         report.n_validation,
-        time.as_secs_f64(),
+        significant(time.as_secs_f64(), 3),
         table.to_terminal()
     )
 }

@@ -12,8 +12,7 @@
 //! Neural Networks 5(6); the rule for `μ` is that of Nielsen (1999), "Damping parameter in Marquardt's method",
 //! report IMM-REP-1999-05, Technical University of Denmark.
 
-use nalgebra::{DMatrix, DVector};
-
+use crate::cholesky::Triangle;
 use crate::network::Network;
 use crate::normal_equations::{NormalEquations, cost};
 use crate::samples::Samples;
@@ -31,6 +30,8 @@ pub struct LevenbergMarquardt {
     damping: Option<f64>,
     growth: f64,
     sums: NormalEquations,
+    damped: Triangle,
+    step: Vec<f64>,
 }
 
 /// What came of an epoch.
@@ -44,7 +45,13 @@ pub enum Step {
 
 impl Default for LevenbergMarquardt {
     fn default() -> Self {
-        Self { damping: None, growth: 2.0, sums: NormalEquations::default() }
+        Self {
+            damping: None,
+            growth: 2.0,
+            sums: NormalEquations::default(),
+            damped: Triangle::default(),
+            step: Vec::new(),
+        }
     }
 }
 
@@ -59,21 +66,19 @@ impl LevenbergMarquardt {
         }
         let diagonal = (0..n).map(|index| sums.hessian(index, index)).fold(0.0, f64::max);
         let mut damping = self.damping.unwrap_or(FIRST_DAMPING * diagonal);
-        let gradient = DVector::from_column_slice(&sums.gradient);
         let mut moved = network.clone();
         for _ in 0..MOST_FAILURES {
-            // The factorization reads the lower triangle.
-            let mut damped = DMatrix::from_fn(n, n, |row, column| sums.hessian(column.min(row), row));
-            for index in 0..n {
-                damped[(index, index)] += damping;
-            }
-            if let Some(factor) = damped.cholesky() {
-                let step = -factor.solve(&gradient);
-                for ((new, old), by) in moved.parameters_mut().iter_mut().zip(network.parameters()).zip(step.iter()) {
+            self.damped.put(sums.triangle(), (n, sums.width()), damping);
+            if self.damped.factorize() {
+                self.step.clone_from(&sums.gradient);
+                self.damped.solve(&mut self.step);
+                self.step.iter_mut().for_each(|step| *step = -*step);
+                for ((new, old), by) in moved.parameters_mut().iter_mut().zip(network.parameters()).zip(&self.step) {
                     *new = old + by;
                 }
                 let lowered = sums.cost - cost(&moved, samples);
-                let foretold = 0.5 * step.dot(&(damping * &step - &gradient));
+                let downhill = |(step, slope): (&f64, &f64)| step * (damping * step - slope);
+                let foretold = 0.5 * self.step.iter().zip(&sums.gradient).map(downhill).sum::<f64>();
                 if lowered > 0.0 && foretold > 0.0 {
                     let trust = 2.0 * (lowered / foretold) - 1.0;
                     let shrink = (1.0 - trust * trust * trust).max(1.0 / 3.0);

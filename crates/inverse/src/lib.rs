@@ -13,6 +13,7 @@
 pub mod activation;
 pub mod backpropagation;
 pub mod branch;
+mod cholesky;
 pub mod coverage;
 pub mod design;
 pub mod domain;

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::network::{Network, Pass};
 use crate::samples::Samples;
 
-/// Samples in a block.
+/// Most samples in a block.
 const BLOCK: usize = 256;
 /// Rows of a batch: with 250 parameters they fill 64 kB.
 const ROWS: usize = 32;
@@ -26,6 +26,13 @@ const MOST_LANES: usize = 8;
 
 /// Samples that pass through the network side by side.
 const SIDE_BY_SIDE: usize = 8;
+
+/// Blocks of about equal size, an even number of them: two threads are done at the same time.
+fn blocks(n_samples: usize) -> Vec<Range<usize>> {
+    let n_blocks = n_samples.div_ceil(BLOCK).next_multiple_of(2);
+    let size = n_samples.div_ceil(n_blocks.max(1)).next_multiple_of(SIDE_BY_SIDE);
+    (0..n_samples).step_by(size.max(1)).map(|first| first..(first + size).min(n_samples)).collect()
+}
 
 /// Sums over samples.
 #[derive(Debug, Clone)]
@@ -44,6 +51,16 @@ impl Sums {
     fn zero(n: usize) -> Self {
         let width = n.next_multiple_of(TILE.1 * MOST_LANES);
         Self { hessian: vec![0.0; width * width], width, gradient: vec![0.0; n], cost: 0.0 }
+    }
+
+    /// The rows of `JᵀJ`, whose upper triangle is filled.
+    pub(crate) fn triangle(&self) -> &[f64] {
+        &self.hessian[..self.gradient.len() * self.width]
+    }
+
+    /// Length of these rows.
+    pub(crate) fn width(&self) -> usize {
+        self.width
     }
 
     /// An element of the upper triangle of `JᵀJ`.
@@ -102,10 +119,9 @@ impl NormalEquations {
     /// Sums over all samples, the residual being output less target.
     pub(crate) fn sum(&mut self, network: &Network, samples: &Samples) {
         let n = network.parameters().len();
-        self.blocks.resize_with(samples.len().div_ceil(BLOCK).max(1), || Sums::zero(n));
-        self.blocks.par_iter_mut().enumerate().for_each(|(index, block)| {
-            block.sum(network, samples, index * BLOCK..((index + 1) * BLOCK).min(samples.len()));
-        });
+        let ranges = blocks(samples.len());
+        self.blocks.resize_with(ranges.len().max(1), || Sums::zero(n));
+        self.blocks.par_iter_mut().zip(ranges).for_each(|(block, range)| block.sum(network, samples, range));
         if let Some((all, others)) = self.blocks.split_first_mut() {
             for block in others {
                 add(&mut all.hessian, &block.hessian);
@@ -178,14 +194,13 @@ fn add_product<S: Simd>(
 
 /// `½ Σ r²` over all samples.
 pub(crate) fn cost(network: &Network, samples: &Samples) -> f64 {
-    let blocks: Vec<f64> = (0..samples.len().div_ceil(BLOCK))
+    let blocks: Vec<f64> = blocks(samples.len())
         .into_par_iter()
         .map(|block| {
             let mut pass = network.pass();
             let mut sum = 0.0;
-            let end = ((block + 1) * BLOCK).min(samples.len());
-            for first in (block * BLOCK..end).step_by(SIDE_BY_SIDE) {
-                for residual in residuals(network, samples, first, &mut pass).into_iter().take(end - first) {
+            for first in block.clone().step_by(SIDE_BY_SIDE) {
+                for residual in residuals(network, samples, first, &mut pass).into_iter().take(block.end - first) {
                     sum += 0.5 * residual * residual;
                 }
             }

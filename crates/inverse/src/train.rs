@@ -15,12 +15,12 @@ use crate::stream::Stream;
 /// none themselves, and an epoch takes as long as it has points.
 const FIRST_PER_PARAMETER: usize = 2;
 
-/// Error of all points over that of those that a descent goes by, above which it is given twice as many: they are being
+/// Error of other points over that of those that a descent goes by, above which it is given twice as many: they are being
 /// learnt by heart.
 const BY_HEART: f64 = 1.25;
 
-/// Share of the cost that an epoch has to take off, or the descent is given twice as many: it is no longer finding its way.
-const SLOW: f64 = 0.05;
+/// Share of the error that an epoch has to take off, or the descent is given twice as many: it is no longer finding its way.
+const SLOW: f64 = 0.025;
 
 /// What trains well, by method.
 pub fn defaults(method: Method) -> TrainConfig {
@@ -53,7 +53,8 @@ pub struct Trained {
     pub starts: Vec<StartReport>,
     /// The start that the network comes from.
     pub chosen: usize,
-    /// Its training error after every epoch, the untrained network first; root mean square, scaled.
+    /// Its training error after every epoch, the untrained network first, over the points that the epoch went by; root mean
+    /// square, scaled.
     pub training_rmse: Vec<f64>,
     /// Its validation error, likewise.
     pub validation_rmse: Vec<f64>,
@@ -111,41 +112,50 @@ struct Growing<'a> {
     descent: LevenbergMarquardt,
     training: &'a Samples,
     few: Samples,
-    /// Cost of the few after the epoch before.
-    cost: f64,
+    /// Error of the few after the epoch before, root mean square.
+    error: f64,
 }
 
 impl<'a> Growing<'a> {
     fn new(training: &'a Samples, n_parameters: usize) -> Self {
         let few = training.first(FIRST_PER_PARAMETER * n_parameters);
-        Self { descent: LevenbergMarquardt::default(), training, few, cost: f64::INFINITY }
+        Self { descent: LevenbergMarquardt::default(), training, few, error: f64::INFINITY }
     }
 
-    /// One epoch; the cost it comes to is that of all points.
-    fn epoch(&mut self, network: &mut Network) -> Step {
-        let step = self.descent.epoch(network, &self.few);
-        let (n_few, n_all) = (self.few.len(), self.training.len());
-        if n_few == n_all {
-            return step;
-        }
-        let of_all = cost(network, self.training);
-        let grows = match step {
-            Step::Lower(of_few) => {
-                let slow = of_few > (1.0 - SLOW) * self.cost;
-                self.cost = of_few;
-                slow || of_all / n_all as f64 > BY_HEART * BY_HEART * of_few / n_few as f64
+    /// One epoch; the error that it leaves of the points that it went by, none where no step lowers that of all.
+    fn epoch(&mut self, network: &mut Network) -> Option<f64> {
+        loop {
+            match self.descent.epoch(network, &self.few) {
+                Step::Lower(cost) => return Some(rmse(cost, &self.few)),
+                Step::Stuck if self.few.len() == self.training.len() => return None,
+                Step::Stuck => {
+                    self.descent = LevenbergMarquardt::default();
+                    self.grow();
+                }
             }
-            Step::Stuck => {
-                self.descent = LevenbergMarquardt::default();
-                true
-            }
-        };
-        if grows {
-            self.few = self.training.first(2 * n_few);
-            self.cost = f64::INFINITY;
         }
-        Step::Lower(of_all)
     }
+
+    /// Takes more points where an epoch that left `error` of the few and `of_others` of points that it did not go by says so.
+    fn judge(&mut self, error: f64, of_others: f64) {
+        let slow = error > (1.0 - SLOW) * self.error;
+        self.error = error;
+        if slow || of_others > BY_HEART * error {
+            self.grow();
+        }
+    }
+
+    fn grow(&mut self) {
+        if self.few.len() < self.training.len() {
+            self.few = self.training.first(2 * self.few.len());
+            self.error = f64::INFINITY;
+        }
+    }
+}
+
+/// Root mean square of the residuals whose [`cost`] is known.
+fn rmse(cost: f64, samples: &Samples) -> f64 {
+    (2.0 * cost / samples.len() as f64).sqrt()
 }
 
 #[expect(clippy::too_many_arguments, reason = "one call, right above")]
@@ -165,31 +175,28 @@ fn run(
     let mut descent = Growing::new(training, network.parameters().len());
     let random = Stream::Order(start).random(seed);
     let mut printed = Backpropagation::new(config.learning_rate, config.update, training.len(), random);
-    let rmse = |cost: f64, samples: &Samples| (2.0 * cost / samples.len() as f64).sqrt();
 
     let mut training_rmse = vec![rmse(cost(&network, training), training)];
     let mut validation_rmse = vec![rmse(cost(&network, validation), validation)];
     let mut best = (validation_rmse[0], 0, network.clone());
     let mut ended = Ended::EpochsUsedUp;
     for epoch in 1..=config.n_epochs {
-        let (training_cost, stuck) = match config.method {
-            Method::LevenbergMarquardt => match descent.epoch(&mut network) {
-                Step::Lower(cost) => (cost, false),
-                Step::Stuck => (f64::NAN, true),
-            },
-            Method::Backpropagation => (printed.epoch(&mut network, training), false),
+        let trained = match config.method {
+            Method::LevenbergMarquardt => descent.epoch(&mut network),
+            Method::Backpropagation => Some(rmse(printed.epoch(&mut network, training), training)),
         };
         tick();
-        if stuck {
+        let Some(trained) = trained else {
             ended = Ended::Converged;
             break;
-        }
+        };
         let error = rmse(cost(&network, validation), validation);
-        if !(training_cost.is_finite() && error.is_finite()) {
+        if !(trained.is_finite() && error.is_finite()) {
             ended = Ended::Diverged;
             break;
         }
-        training_rmse.push(rmse(training_cost, training));
+        descent.judge(trained, error);
+        training_rmse.push(trained);
         validation_rmse.push(error);
         if error < best.0 {
             best = (error, epoch, network.clone());
@@ -228,7 +235,9 @@ mod tests {
         let mut whole = LevenbergMarquardt::default();
         for _ in 0..100 {
             whole.epoch(&mut all, &samples);
-            growing.epoch(&mut few);
+            if let Some(error) = growing.epoch(&mut few) {
+                growing.judge(error, rmse(cost(&few, &samples), &samples));
+            }
         }
         assert_eq!(growing.few.len(), samples.len());
         let (few, all) = (cost(&few, &samples), cost(&all, &samples));
