@@ -82,7 +82,7 @@ def figure(results):
         line = part["lines"][0]
         layers = "-".join(map(str, [3, *line["size"], 1]))
         sheet.head(f"Inverse network {layers}: to an RMSE of the pressure, in percent of its range",
-                   "seconds on a logarithmic axis; one start each; ours with its whole process, peers the fit alone")
+                   "seconds on a logarithmic axis; one start each; training alone, of all")
         rows = []
         for index, goal in enumerate(line["ours"][-1]["to_goal"]):
             rows.append((f"{goal['goal']:g} %: ours", [(goal["seconds"], "ours")], seconds(goal["seconds"])))

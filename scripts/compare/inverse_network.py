@@ -1,6 +1,7 @@
 """Inverse network: pam-train-inverse against scikit-learn's MLPRegressor of equal size, to equal error."""
 
 import json
+import re
 import time
 import warnings
 
@@ -16,10 +17,14 @@ OURS = "pam-train-inverse"
 # As a peer is timed: one start, and its judging left out as far as it can be.
 ALIKE = f"{OURS}, one start, unjudged"
 VARIANTS = {OURS: [], ALIKE: ["--starts", 1, "--judge-points", 100]}
+# What it says of that itself: without start, reading and drawing the points, and writing.
+TRAINING = "its training alone"
 SIZES = ((20,), (12, 12))
 # RMSE of the pressure on unseen points, in percent of its range.
 GOALS_PERCENT = (1.0, 0.3, 0.1, 0.03)
 N_POINTS, N_HELD = 2000, 20_000
+# Of ours, for each seed: some ten milliseconds each.
+RUNS = 9
 LBFGS_STEPS = (25, 50, 100, 200, 400, 800, 1600, 3200, 6400, 12_800, 25_600, 51_200)
 
 
@@ -123,6 +128,11 @@ def first_below(track, goal):
     return next((seconds for seconds, error in track if error <= goal), None)
 
 
+def trained_s(said):
+    """Seconds that pam-train-inverse says its training took."""
+    return float(re.search(r"^Training of .* in (\S+) s$", said, re.MULTILINE)[1])
+
+
 def best_within(track, seconds):
     return min((error for at, error in track if at <= seconds), default=None)
 
@@ -138,33 +148,37 @@ def compare(programs, scratch, quick, seed):
     lines = []
     for size in SIZES:
         train = [programs / "pam-train-inverse", "--model", model_path, "--hidden", ",".join(map(str, size)),
-                 "--out", inverse_path, "--quiet"]
+                 "--out", inverse_path]
         goals = (None, *GOALS_PERCENT)
         spent = {name: {goal: [] for goal in goals} for name in VARIANTS}
         reached = {name: {goal: [] for goal in goals} for name in VARIANTS}
+        alone = {goal: [] for goal in goals}
         tracks = {"adam": [], "lbfgs": []}
         for repetition in range(n_seeds):
             for goal in goals:
                 # Judged on other points than it stops by: a little below the goal.
                 aim = [] if goal is None else ["--goal-percent", 0.8 * goal]
                 for name, options in VARIANTS.items():
-                    for _ in range(3):
-                        seconds, _ = run([*train, *options, *aim, "--seed", seed + repetition], scratch, (0, 1))
-                        spent[name][goal].append(seconds)
-                    answers = ours_on(json.loads(inverse_path.read_text()), held[0])
-                    reached[name][goal].append(error_percent(answers, held[1]))
+                    runs = [run([*train, *options, *aim, "--seed", seed + repetition], scratch, (0, 1), says="stderr")
+                            for _ in range(RUNS)]
+                    spent[name][goal].append(median([seconds for seconds, _ in runs]))
+                    if name == ALIKE:
+                        alone[goal].append(median([trained_s(said) for _, said in runs]))
+                    inverse = json.loads(inverse_path.read_text())
+                    reached[name][goal].append(error_percent(ours_on(inverse, held[0]), held[1]))
             training = points.draw(N_POINTS, seed + repetition, design=True)
             for name, descend in (("adam", adam), ("lbfgs", lbfgs)):
                 say(f"inverse network: {size}, {name}, seed {repetition + 1}")
                 tracks[name].append(descend(size, training, held, seed + repetition, budget_s))
-        whole, final = median(spent[ALIKE][None]), median(reached[ALIKE][None])
+        spent[TRAINING], reached[TRAINING] = alone, reached[ALIKE]
+        own_end, final = median(alone[None]), median(reached[ALIKE][None])
         line = {"size": size, "ours": [{
             "name": name, "whole_s": median(spent[name][None]), "error_percent": reached[name][None],
             "to_goal": [
                 {"goal": goal, "seconds": median(spent[name][goal]), "error": median(reached[name][goal])}
                 for goal in GOALS_PERCENT
             ],
-        } for name in VARIANTS], "final": final, "peers": []}
+        } for name in (*VARIANTS, TRAINING)], "final": final, "peers": []}
         for name, runs in tracks.items():
             to_goal = []
             for goal in (*GOALS_PERCENT, final):
@@ -177,7 +191,7 @@ def compare(programs, scratch, quick, seed):
             line["peers"].append({
                 "name": name, "to_goal": to_goal, "longest_s": max(track[-1][0] for track, _ in runs), "ended": all(ended for _, ended in runs),
                 "best_percent": [min(error for _, error in track) for track, _ in runs],
-                "at_equal_time": [best_within(track, whole) for track, _ in runs],
+                "at_equal_time": [best_within(track, own_end) for track, _ in runs],
             })
         lines.append(line)
     return {"n_points": N_POINTS, "n_held": len(held[1]), "budget_s": budget_s, "lines": lines}

@@ -26,14 +26,14 @@ def processor_s():
     return used.ru_utime + used.ru_stime
 
 
-def run(command, cwd, accept=(0,), environment=None):
-    """Seconds of one run, start to end, and its standard output. Ends the comparison where it fails."""
+def run(command, cwd, accept=(0,), environment=None, says="stdout"):
+    """Seconds of one run, start to end, and what it `says`. Ends the comparison where it fails."""
     start = time.perf_counter()
     done = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True, env=environment)
     seconds = time.perf_counter() - start
     if done.returncode not in accept:
         sys.exit(f"error: {' '.join(map(str, command))}: exit code {done.returncode}\n{done.stderr.strip()}")
-    return seconds, done.stdout
+    return seconds, getattr(done, says)
 
 
 def peer(script, words, cwd):
