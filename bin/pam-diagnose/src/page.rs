@@ -185,7 +185,7 @@ fn parameter(entry: &ParameterEntry) -> PageParameter {
         stderr: entry.stderr,
         status: match entry.status {
             ParameterStatus::Fitted => "fitted",
-            ParameterStatus::Fixed => "fixed",
+            ParameterStatus::Fixed => "not seen by these recordings",
             ParameterStatus::Composite => "share of a composite",
             ParameterStatus::AtBound => "at the end of its range",
         }

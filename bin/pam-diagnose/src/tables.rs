@@ -64,7 +64,11 @@ fn value(entry: &ParameterEntry) -> String {
         Some(stderr) => engineering_with_stderr(entry.value, stderr, &entry.unit),
         None => engineering(entry.value, &entry.unit, 3),
     };
-    if entry.status == ParameterStatus::AtBound { format!("{value}, at its bound") } else { value }
+    match entry.status {
+        ParameterStatus::AtBound => format!("{value}, at its bound"),
+        ParameterStatus::Fixed => format!("{value}, not seen"),
+        ParameterStatus::Fitted | ParameterStatus::Composite => value,
+    }
 }
 
 /// Residuals before and after.

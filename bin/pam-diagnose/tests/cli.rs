@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
@@ -173,6 +174,45 @@ fn presliding_that_was_concealed_is_named_and_pays_on_what_was_held_out() {
 #[test]
 fn a_threshold_pressure_that_was_concealed_is_named_and_pays_on_what_was_held_out() {
     finds(&Desk::with(&[Concealed::new("threshold-pressure", 1.0)]), "threshold-pressure", "threshold");
+}
+
+#[test]
+fn a_length_that_is_held_says_nothing_of_its_delay() {
+    let desk = Desk::plain();
+    let (model, _) = ModelArtifact::read(&desk.path("model.json")).unwrap();
+    let model = model.augmented_model();
+    // White noise of a sort.
+    let noise = |row: i32, channel: i32| {
+        let wild = (f64::from(row * 4 + channel) * 12.9898).sin() * 43758.5453;
+        wild - wild.floor() - 0.5
+    };
+    for (file, length_mm) in [240.0, 232.0, 224.0, 216.0].into_iter().enumerate() {
+        let mut csv = "time_s,pressure_kPa,length_mm,force_N\n".to_owned();
+        for row in 0..4000 {
+            let time_s = 0.01 * f64::from(row);
+            let pressure_kpa = |time_s: f64| 250.0 - 200.0 * (3.0 * time_s).cos();
+            let force_n = model.settled_force_n(1e3 * pressure_kpa(time_s), 1e-3 * length_mm, 0.0);
+            writeln!(
+                csv,
+                "{time_s:.2},{:.3},{:.4},{:.3}",
+                pressure_kpa(time_s - 0.02) + 0.3 * noise(row, 0),
+                length_mm + 0.02 * noise(row, 1),
+                force_n + noise(row, 2)
+            )
+            .unwrap();
+        }
+        desk.file(&format!("held-{file}.csv"), csv);
+    }
+    let files = "held-0.csv held-1.csv held-2.csv held-3.csv";
+    let (diagnosis, model) = desk.diagnosed(
+        &format!("{files} --model model.json --out diagnosis.json --out-model augmented.json --max-effects 1 --quiet"),
+        0,
+    );
+    assert_eq!(diagnosis.effects[0].id, "channel-delay");
+    let parameters = &model.effects[0].parameters;
+    assert!((parameters[0].value - 0.02).abs() < 1e-3, "{parameters:?}");
+    assert_eq!(parameters[1].value, 0.0, "{parameters:?}");
+    assert!(parameters[1].stderr.is_none_or(|stderr_s| stderr_s > 1e-3), "{parameters:?}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::Seen;
+use pam_core::effects::{Kind, Seen};
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::Guess;
@@ -9,6 +9,7 @@ use crate::joint::HeldOut;
 use crate::state::{Setting, State};
 use crate::structure::{Feature, Remainder, Structure, features, telling_force_n};
 use crate::trial::{self, Shapes, Trial};
+use crate::uncertainty::correlated_instants;
 
 /// Limits of a search.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,7 +123,7 @@ pub fn search(
         floor_square = floor_square.min(best.held_out.mean_square());
     }
     let whole = base.held_out.mean_square() - floor_square;
-    let best = polished(setting, without_stand_ins(setting, best, &features, whole))?;
+    let best = at_rest(setting, polished(setting, without_stand_ins(setting, best, &features, whole))?)?;
     let mut taken = Vec::new();
     for index in 0..best.state.guesses.len() {
         let Some((without, rivals)) = without(setting, &best, index, &seen, &promising) else { continue };
@@ -215,6 +216,42 @@ fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
         Some(detailed) if detailed.held_out.mean_square() < plain.held_out.mean_square() => detailed,
         _ => plain,
     })
+}
+
+/// Share of the mean square by which a shape must lower it to differ from zero.
+const WORTH_A_SHAPE: f64 = 0.01;
+
+/// What was taken, with those of its shapes at zero that the data do not tell from it: they have followed the noise, and
+/// other recordings would show it. A length that is held says nothing of its delay.
+fn at_rest(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
+    let alike = correlated_instants(setting, &setting.residuals_n(&best.state));
+    let rows = setting.track.n_counted() as f64 / alike;
+    let lowest = best.state.fit.mean_square;
+    let mut rested: Option<State> = None;
+    for index in 0..best.state.guesses.len() {
+        let guess = &best.state.guesses[index];
+        if guess.effect.kind() == Kind::Event {
+            continue;
+        }
+        for (parameter, shape) in guess.effect.shape().iter().enumerate() {
+            if guess.shape[parameter] == 0.0 || !(shape.range.0..=shape.range.1).contains(&0.0) {
+                continue;
+            }
+            let state = rested.as_ref().unwrap_or(&best.state);
+            let mut guesses = state.guesses.clone();
+            guesses[index].shape[parameter] = 0.0;
+            let Some(state) = setting.fit_near(guesses, state) else { continue };
+            // All that rest together.
+            let lost = state.fit.mean_square / lowest - 1.0;
+            if rows * lost < 1.0 || lost < WORTH_A_SHAPE {
+                rested = Some(state);
+            }
+        }
+    }
+    match rested {
+        Some(state) => judged(setting, state),
+        None => Some(best),
+    }
 }
 
 /// Rounds in which details and the other shapes settle with one another.

@@ -60,7 +60,7 @@ impl Uncertainty {
 }
 
 /// Standard error of each shape parameter of effect `index`, from the curvature of the mean square around it; none where the
-/// data do not bend it.
+/// data do not bend it, or by so little that any value in its range is as good.
 pub fn shape_errors(setting: &Setting<'_>, state: &State, index: usize, correlated: f64) -> Vec<Option<f64>> {
     let guess = &state.guesses[index];
     let rows = setting.track.n_counted() as f64 / correlated;
@@ -84,7 +84,9 @@ pub fn shape_errors(setting: &Setting<'_>, state: &State, index: usize, correlat
             };
             let (below, above) = (at(guess.shape[parameter] - step)?, at(guess.shape[parameter] + step)?);
             let bend = (below + above - 2.0 * here) / (step * step);
-            (bend > 0.0).then(|| (2.0 * here / (rows * bend)).sqrt())
+            let stderr = (2.0 * here / (rows * bend)).sqrt();
+            // What rounding bends is none of the data's.
+            (bend > 0.0 && stderr < shape.range.1 - shape.range.0).then_some(stderr)
         })
         .collect()
 }
@@ -140,6 +142,12 @@ pub fn entries(
     let guess = &state.guesses[index];
     let shapes = guess.effect.shape().iter().zip(&guess.shape).zip(shape_errors).map(|((shape, &value), &stderr)| {
         let found = entry(shape.name, shape.unit, value, shape.range, stderr);
+        // At zero because the data do not see it.
+        let found = if value == 0.0 && stderr.is_none() {
+            ParameterEntry { status: ParameterStatus::Fixed, ..found }
+        } else {
+            found
+        };
         // When and where an event happened has no bound of physics.
         let at_large = guess.effect.kind() == Kind::Event;
         if at_large { ParameterEntry { status: ParameterStatus::Fitted, ..found } } else { found }

@@ -114,8 +114,8 @@ static PAGE: Page = Page {
         Symbol {
             symbol: "F_floor",
             unit: "N",
-            meaning: "what the cell reads of a slack muscle: its tare, the weight that hangs on it, less the load at which it \
-                      buckles; -15 to 5 N",
+            meaning: "what the cell reads of a slack muscle: tare and hung weight less the buckling load; on two Festo \
+                      muscles (10 mm) -9 and -10 N",
         },
         Symbol {
             symbol: "w",
