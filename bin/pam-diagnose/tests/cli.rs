@@ -177,6 +177,19 @@ fn a_threshold_pressure_that_was_concealed_is_named_and_pays_on_what_was_held_ou
 }
 
 #[test]
+fn a_mass_that_knocks_is_confirmed_by_a_chirp() {
+    let desk = Desk::with(&[Concealed::new("inertia", 6.0)]);
+    let files = "--out diagnosis.json --out-model augmented.json --next-experiment next.csv --quiet";
+    let (diagnosis, _) = desk.diagnosed(&format!("{LOGS} --model model.json {files}"), 0);
+    let ids: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.id.as_str()).collect();
+    assert_eq!(ids, ["inertia"]);
+    let next = diagnosis.next_experiment.unwrap();
+    assert_eq!((next.protocol.as_str(), next.separates), ("length-chirp", vec!["inertia".to_owned()]));
+    assert!(next.separation_n > 0.3, "{}", next.separation_n);
+    assert!(desk.path("next.csv").exists());
+}
+
+#[test]
 fn a_length_that_is_held_says_nothing_of_its_delay() {
     let desk = Desk::plain();
     let (model, _) = ModelArtifact::read(&desk.path("model.json")).unwrap();

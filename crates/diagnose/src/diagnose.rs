@@ -17,7 +17,7 @@ use crate::error::DiagnoseError;
 use crate::isolability::isolability;
 use crate::joint::HeldOut;
 use crate::knocks::{self, Knocks};
-use crate::next_experiment::{Setpoints, next_experiment};
+use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::question::{Answer, Question};
 use crate::regions::{Place, concentrated};
 use crate::search::{Found, Limits, chance};
@@ -161,7 +161,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let correlated = correlated_instants(&setting, &setting.residuals_n(state));
     let isolability =
         isolability(&setting, &found.base.state, sizes.floor_n, track.n_counted() as f64 / correlated.max(1.0));
-    let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain);
+    // Where the mass that knocks is all there is to confirm.
+    let mass = || {
+        let knocks = knocks.as_ref().filter(|_| verdict == Verdict::Explained)?;
+        confirm_mass(Knocks::effect(), knocks.mass_kg(), state, &model.domain)
+    };
+    let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(mass);
     let diagnosis = Diagnosis {
         verdict,
         statement: words::statement(verdict, &effects, &sizes, &regions, &unexplained),

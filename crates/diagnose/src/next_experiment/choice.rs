@@ -161,6 +161,23 @@ fn confirm(
     Some(planned(protocol, &reach, separates, best.pairs_n[0], instruction))
 }
 
+/// The protocol of the page of `effect`, a mass that was found where a drive starts, stops or turns: one that accelerates it
+/// all the time.
+pub(crate) fn confirm_mass(
+    effect: &'static dyn Effect,
+    mass_kg: f64,
+    best: &State,
+    domain: &Domain,
+) -> Option<(NextExperiment, Setpoints)> {
+    let page = effect.page();
+    let protocol = protocols::named(page.protocol)?;
+    let reach = Reach::of(domain, &best.model, best.hangs_slack());
+    let instruction = format!("{} It would confirm {}: {}.", run_it(protocol, &reach), page.name, page.test);
+    let (mut experiment, setpoints) = planned(protocol, &reach, vec![page.id.to_owned()], 0.0, instruction);
+    experiment.separation_n = mass_kg.abs() * setpoints.acceleration_m_per_s2();
+    Some((experiment, setpoints))
+}
+
 /// The first amplitude of `effect` in `state`.
 fn amplitude_of(state: &State, effect: &'static dyn Effect) -> Option<f64> {
     let position = state.guesses.iter().position(|guess| guess.id() == effect.page().id)?;

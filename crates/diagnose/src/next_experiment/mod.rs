@@ -11,5 +11,5 @@ mod plan;
 mod separation;
 mod setpoints;
 
-pub(crate) use choice::next_experiment;
+pub(crate) use choice::{confirm_mass, next_experiment};
 pub use setpoints::{SetPoint, Setpoints};

@@ -38,6 +38,19 @@ impl Setpoints {
         self.points.last().map_or(0.0, |point| point.time_s)
     }
 
+    /// Acceleration of the length on the way, root mean square, in m/s².
+    pub(super) fn acceleration_m_per_s2(&self) -> f64 {
+        let (mut squares, mut time_s) = (0.0, 0.0);
+        for around in self.points.windows(3) {
+            let steps_s = [around[1].time_s - around[0].time_s, around[2].time_s - around[1].time_s];
+            let speeds = [0, 1].map(|at| 1e-3 * (around[at + 1].length_mm - around[at].length_mm) / steps_s[at]);
+            let between_s = 0.5 * (steps_s[0] + steps_s[1]);
+            squares += between_s * ((speeds[1] - speeds[0]) / between_s).powi(2);
+            time_s += between_s;
+        }
+        (squares / f64::max(time_s, f64::MIN_POSITIVE)).sqrt()
+    }
+
     pub(super) fn of(takes: &[Take]) -> Self {
         let mut points: Vec<SetPoint> = Vec::new();
         let mut start_s = 0.0;
@@ -59,6 +72,17 @@ mod tests {
     use super::*;
     use crate::protocols::{PROTOCOLS, Reach};
     use crate::rehearsal::tests::{Given, domain};
+
+    #[test]
+    fn a_sine_accelerates_as_it_should() {
+        let point = |index: i32| {
+            let time_s = 0.01 * f64::from(index);
+            SetPoint { time_s, pressure_kpa: 300.0, length_mm: 250.0 + 5.0 * (6.0 * time_s).sin() }
+        };
+        let path = Setpoints { points: (0..10_000).map(point).collect() };
+        let expected = 5e-3 * 36.0 / 2.0_f64.sqrt();
+        assert!((path.acceleration_m_per_s2() / expected - 1.0).abs() < 1e-2);
+    }
 
     #[test]
     fn set_points_stay_in_the_domain_and_run_forward() {
