@@ -14,6 +14,8 @@ use crate::stream::Stream;
 /// Points that a descent begins with, for each parameter of the network: the first of a sequence that leaves no gaps leave
 /// none themselves, and an epoch takes as long as it has points.
 const FIRST_PER_PARAMETER: usize = 2;
+/// But so many at least: fewer are as fast, and a small network would have learnt them by heart.
+const FIRST_AT_LEAST: usize = 400;
 
 /// Error of other points over that of those that a descent goes by, above which it is given twice as many: they are being
 /// learnt by heart.
@@ -118,7 +120,7 @@ struct Growing<'a> {
 
 impl<'a> Growing<'a> {
     fn new(training: &'a Samples, n_parameters: usize) -> Self {
-        let few = training.first(FIRST_PER_PARAMETER * n_parameters);
+        let few = training.first((FIRST_PER_PARAMETER * n_parameters).max(FIRST_AT_LEAST));
         Self { descent: LevenbergMarquardt::default(), training, few, error: f64::INFINITY }
     }
 
@@ -230,7 +232,7 @@ mod tests {
         }
         let begin = network(Activation::Tanh, Activation::Linear);
         let mut growing = Growing::new(&samples, begin.parameters().len());
-        assert_eq!(growing.few.len(), 2 * (3 * 8 + 8 + 8 + 1));
+        assert_eq!(growing.few.len(), FIRST_AT_LEAST);
         let (mut few, mut all) = (begin.clone(), begin);
         let mut whole = LevenbergMarquardt::default();
         for _ in 0..100 {
