@@ -146,7 +146,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let verdict = verdict(&found, &sizes, knocks.is_some());
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
 
-    let (effects, entries) = named(&setting, &found, &uncertainty, knocks.as_ref());
+    let correlated = correlated_instants(&setting, &setting.residuals_n(state));
+    let (effects, entries) = named(&setting, &found, &uncertainty, correlated, knocks.as_ref());
     let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
     let mut terms = state.terms();
     if let Some(knocks) = &knocks {
@@ -158,7 +159,6 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     } else {
         Vec::new()
     };
-    let correlated = correlated_instants(&setting, &setting.residuals_n(state));
     let isolability =
         isolability(&setting, &found.base.state, sizes.floor_n, track.n_counted() as f64 / correlated.max(1.0));
     // Where the mass that knocks is all there is to confirm.
@@ -233,15 +233,16 @@ fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
     }
 }
 
-/// The effects that were taken and the mass behind `knocks`, in order of evidence, and in that in which a model has them.
+/// The effects that were taken and the mass behind `knocks`, in order of evidence, and in that in which a model has them;
+/// `correlated` instants of the residual stand for one.
 fn named(
     setting: &Setting<'_>,
     found: &Found,
     uncertainty: &Uncertainty,
+    correlated: f64,
     knocks: Option<&Knocks>,
 ) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
     let state = &found.best.state;
-    let correlated = correlated_instants(setting, &setting.residuals_n(state));
     let mut named = Vec::new();
     let mut first = 0;
     for (index, guess) in state.guesses.iter().enumerate() {

@@ -65,6 +65,7 @@ impl Ground<'_> {
                 seen: split_off(&mut seen, range.len()),
                 base: split_off(&mut base, range.len()),
                 columns: split_off(&mut columns, range.len() * width),
+                width,
             })
             .collect();
         parts.into_par_iter().for_each(|part| self.fill(part, guesses, model));
@@ -72,7 +73,7 @@ impl Ground<'_> {
     }
 
     fn fill(&self, part: Part<'_>, guesses: &[Guess], model: &ForceModel) {
-        let Part { range, seen, base, columns } = part;
+        let Part { range, seen, base, columns, width } = part;
         let mut delays_s = [0.0; 2];
         for guess in guesses.iter().filter(|guess| guess.effect.role() == Role::Shift) {
             let more_s = guess.effect.delays_s(&guess.shape);
@@ -81,9 +82,7 @@ impl Ground<'_> {
         shift(seen, &self.track.instants[range.clone()], delays_s);
         let mut memories = start(guesses, model);
         let mut last = None;
-        let width = columns.len() / seen.len().max(1);
-        for (((now, row), here), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width.max(1))).zip(base).zip(range)
-        {
+        for (((now, row), here), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width)).zip(base).zip(range) {
             let wanted = self.only.is_none_or(|only| only[at]);
             let mut slide = now.direction;
             for (guess, memory) in guesses.iter().zip(&mut memories) {
@@ -136,6 +135,7 @@ struct Part<'a> {
     seen: &'a mut [Moment],
     base: &'a mut [Base],
     columns: &'a mut [f64],
+    width: usize,
 }
 
 /// The first `n` of `slice`, which keeps the others.

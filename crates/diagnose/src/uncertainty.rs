@@ -142,15 +142,14 @@ pub fn entries(
     let guess = &state.guesses[index];
     let shapes = guess.effect.shape().iter().zip(&guess.shape).zip(shape_errors).map(|((shape, &value), &stderr)| {
         let found = entry(shape.name, shape.unit, value, shape.range, stderr);
-        // At zero because the data do not see it.
-        let found = if value == 0.0 && stderr.is_none() {
-            ParameterEntry { status: ParameterStatus::Fixed, ..found }
-        } else {
-            found
+        let status = match found.status {
+            // When and where an event happened has no bound of physics.
+            _ if guess.effect.kind() == Kind::Event => ParameterStatus::Fitted,
+            // At zero, inside its range, because the data do not see it.
+            ParameterStatus::Fitted if value == 0.0 && stderr.is_none() => ParameterStatus::Fixed,
+            status => status,
         };
-        // When and where an event happened has no bound of physics.
-        let at_large = guess.effect.kind() == Kind::Event;
-        if at_large { ParameterEntry { status: ParameterStatus::Fitted, ..found } } else { found }
+        ParameterEntry { status, ..found }
     });
     let amplitudes = guess.amplitudes().iter().enumerate().map(|(offset, amplitude)| {
         let at = first + offset;

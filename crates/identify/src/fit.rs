@@ -156,6 +156,7 @@ mod tests {
         // Nine moves since the last gain.
         assert_eq!((1..).find(|_| patience.ends(cost(199))), Some(Patience::MOVES - 9));
     }
+
     #[test]
     fn patience_ends_where_nothing_can_be_gained() {
         let mut patience = Patience::new(0.5);

@@ -197,7 +197,9 @@ fn run(
             ended = Ended::Diverged;
             break;
         }
-        descent.judge(trained, error);
+        if config.method == Method::LevenbergMarquardt {
+            descent.judge(trained, error);
+        }
         training_rmse.push(trained);
         validation_rmse.push(error);
         if error < best.0 {

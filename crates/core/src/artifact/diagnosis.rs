@@ -283,7 +283,8 @@ impl DiagnosisArtifact {
     ///
     /// # Errors
     /// [`ArtifactError`] names the file, the place and what to do.
-    // No program that a user runs reads it; `inline` builds it only where it is called, and it is a tenth of the time to build this package.
+    // No program that a user runs reads it; `inline` builds it only where it is called, and it is a tenth of the time to
+    // build this package.
     #[inline]
     pub fn read(path: &Path) -> Result<(Self, String), ArtifactError> {
         super::read(path, SCHEMA, "pam-diagnose")

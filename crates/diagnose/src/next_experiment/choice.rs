@@ -2,13 +2,13 @@
 
 use pam_core::artifact::diagnosis::{NextExperiment, Region, Verdict};
 use pam_core::artifact::model::Domain;
-use pam_core::effects::{Effect, Kind};
+use pam_core::effects::{Effect, Kind, Page};
 
 use super::closer::look_closer;
 use super::plan::{planned, run_it};
 use super::separation::{Explanation, separations};
 use super::setpoints::Setpoints;
-use crate::protocols::{self, PROTOCOLS, Reach};
+use crate::protocols::{self, PROTOCOLS, Protocol, Reach};
 use crate::search::Found;
 use crate::state::{Setting, State};
 use crate::verdict::{Sizes, alternatives};
@@ -157,7 +157,7 @@ fn confirm(
             .max_by(|left, right| left.worth(noise_n).total_cmp(&right.worth(noise_n)))?,
     };
     let protocol = protocols::named(best.protocol)?;
-    let instruction = format!("{} It would confirm {}: {}.", run_it(protocol, &reach), page.name, page.test);
+    let instruction = to_confirm(protocol, &reach, page);
     Some(planned(protocol, &reach, separates, best.pairs_n[0], instruction))
 }
 
@@ -172,10 +172,15 @@ pub(crate) fn confirm_mass(
     let page = effect.page();
     let protocol = protocols::named(page.protocol)?;
     let reach = Reach::of(domain, &best.model, best.hangs_slack());
-    let instruction = format!("{} It would confirm {}: {}.", run_it(protocol, &reach), page.name, page.test);
+    let instruction = to_confirm(protocol, &reach, page);
     let (mut experiment, setpoints) = planned(protocol, &reach, vec![page.id.to_owned()], 0.0, instruction);
     experiment.separation_n = mass_kg.abs() * setpoints.acceleration_m_per_s2();
     Some((experiment, setpoints))
+}
+
+/// How to run a protocol that confirms the effect of `page`, in words.
+fn to_confirm(protocol: &Protocol, reach: &Reach<'_>, page: &Page) -> String {
+    format!("{} It would confirm {}: {}.", run_it(protocol, reach), page.name, page.test)
 }
 
 /// The first amplitude of `effect` in `state`.
