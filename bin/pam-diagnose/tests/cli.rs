@@ -92,6 +92,7 @@ impl Desk {
             bladder_ratio: LATEX_RATIO,
             length_play_m: None,
             pressure_play_pa: None,
+            assumed: pam_core::artifact::model::Assumed::default(),
             accept_implausible: true,
             unbounded: false,
         };

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 use pam_cli::{ReadArgs, RunArgs};
-use pam_core::artifact::model::Loss;
+use pam_core::artifact::model::{BladderLaw, FrictionLaw, Loss};
+use pam_core::direction::Standstill;
 use pam_core::force::{Form, Parameter};
 
 /// Identify a force model of a pneumatic muscle from bench recordings.
@@ -77,6 +78,20 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME=VALUE", value_parser = fixed)]
     pub(crate) fix: Vec<(Parameter, f64)>,
 
+    /// Fit C01 and C10 each on its own, or their sum; by default each, where the recordings can tell them apart.
+    #[arg(long, value_name = "LAW")]
+    pub(crate) bladder: Option<BladderArg>,
+
+    /// Which friction to fit: of the bladder, between strands, or both; by default both, where the recordings can tell
+    /// them apart.
+    #[arg(long, value_name = "LAW")]
+    pub(crate) friction: Option<FrictionArg>,
+
+    /// What friction does while the length stands still: held, follows (the pressure, at once), or the kPa of pressure
+    /// over which it turns over; by default what fits the recordings best.
+    #[arg(long, value_name = "LAW", value_parser = standstill)]
+    pub(crate) standstill: Option<Standstill>,
+
     /// C01/C10 that their fitted sum is shared by.
     #[arg(long, value_name = "RATIO", default_value_t = pam_identification::search_space::LATEX_RATIO)]
     pub(crate) bladder_ratio: f64,
@@ -133,6 +148,59 @@ impl FormArg {
             Self::Corrected => Form::Corrected,
             Self::AsPrinted => Form::AsPrinted,
         }
+    }
+}
+
+/// How the two coefficients of the bladder are fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BladderArg {
+    /// Their sum, at a fixed ratio.
+    Shared,
+    /// Each on its own.
+    Free,
+}
+
+impl BladderArg {
+    pub(crate) fn law(self) -> BladderLaw {
+        match self {
+            Self::Shared => BladderLaw::Shared,
+            Self::Free => BladderLaw::Free,
+        }
+    }
+}
+
+/// Which friction is fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FrictionArg {
+    /// Of the bladder on the strands.
+    Rubber,
+    /// Between strands.
+    Strands,
+    /// Both.
+    Both,
+}
+
+impl FrictionArg {
+    pub(crate) fn law(self) -> FrictionLaw {
+        match self {
+            Self::Rubber => FrictionLaw::Rubber,
+            Self::Strands => FrictionLaw::Strands,
+            Self::Both => FrictionLaw::Both,
+        }
+    }
+}
+
+/// `held`, `follows` or a pressure in kPa.
+fn standstill(text: &str) -> Result<Standstill, String> {
+    match text {
+        "held" => Ok(Standstill::Held),
+        "follows" => Ok(Standstill::AT_ONCE),
+        _ => match text.parse::<f64>() {
+            Ok(over_kpa) if over_kpa > 0.0 && over_kpa.is_finite() => {
+                Ok(Standstill::Slides { over_pa: over_kpa * 1e3 })
+            }
+            _ => Err("expected held, follows, or a pressure in kPa".to_owned()),
+        },
     }
 }
 

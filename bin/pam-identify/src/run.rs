@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context as _, ensure};
 use pam_cli::{Console, Output, Verdict, pretty_json, publish, read_recordings, write_example};
+use pam_core::artifact::model::Assumed;
 use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
@@ -11,7 +12,7 @@ use pam_core::recording::Recording;
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 
-use crate::args::{Args, FormArg};
+use crate::args::{Args, BladderArg, FormArg, FrictionArg};
 use crate::{figure, tables};
 
 /// What `--example` writes.
@@ -140,6 +141,11 @@ fn request(
         bladder_ratio: args.bladder_ratio,
         length_play_m: args.length_play_mm.map(|play_mm| play_mm * 1e-3),
         pressure_play_pa: args.pressure_play_kpa.map(|play_kpa| play_kpa * 1e3),
+        assumed: Assumed {
+            bladder: args.bladder.map(BladderArg::law),
+            friction: args.friction.map(FrictionArg::law),
+            standstill: args.standstill,
+        },
         accept_implausible: args.accept_implausible,
         unbounded: args.unbounded,
     }

@@ -268,7 +268,7 @@ impl<'a> Still<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::direction::Driver;
+    use crate::direction::{Driver, Standstill};
     use crate::force::{BaseParameters, Form};
     use crate::muscle::tests::nominal;
     use crate::recording::{ReadOptions, read_recording};
@@ -276,7 +276,8 @@ mod tests {
     use rand_distr::{Distribution, Normal};
     use std::fmt::Write as _;
 
-    const THRESHOLDS: Thresholds = Thresholds { length_m: 1.5e-4, pressure_pa: 2.5e3 };
+    const THRESHOLDS: Thresholds =
+        Thresholds { length_m: 1.5e-4, pressure_pa: 2.5e3, standstill: Standstill::AT_ONCE };
 
     fn base() -> ForceModel {
         ForceModel::new(&nominal(), 3e9, Form::Corrected, BaseParameters { theta: [0.0; 8] })

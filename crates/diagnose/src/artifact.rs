@@ -171,6 +171,7 @@ impl Diagnosis {
             },
             domain: domain(&self.estimation),
             direction: self.model.direction,
+            standstill_laws: self.model.standstill_laws.clone(),
             quality: prepared().map(|prepared| prepared.quality.clone()).collect(),
             search: SearchReport {
                 // No swarm: the joint fit descends from the model in question.

@@ -1,7 +1,7 @@
 //! All of it in order: from recordings to an artifact.
 
 use pam_core::artifact::model::{
-    Correlation, Domain, FitReport, IdentifyConfig, Loss, ModelArtifact, RecordingFit, SCHEMA, SearchReport,
+    Assumed, BladderLaw, Correlation, Domain, FitReport, FrictionLaw, IdentifyConfig, Loss, ModelArtifact, RecordingFit, SCHEMA, StandstillFit, SearchReport,
     StartReport, UnboundedFit,
 };
 use pam_core::artifact::{Input, Tool};
@@ -15,9 +15,10 @@ use crate::condense::{Condensed, condense};
 use crate::error::IdentifyError;
 use crate::evaluate::{Evaluation, Trace, evaluate, noise_floor_n, trace};
 use crate::fit::{Fit, FitOptions, search};
-use crate::prepare::{Gated, Prepared, direct, gate, thresholds};
+use crate::prepare::{Gated, Prepared, direct, gate, redirect, thresholds};
 use crate::problem::ForceProblem;
 use crate::search_space::{Free, SearchSpace};
+use crate::standstill;
 use crate::uncertainty::{Uncertainty, jackknife};
 use crate::{excitation, faults, geometry, report, robust, unbounded};
 
@@ -46,6 +47,8 @@ pub struct Request {
     pub length_play_m: Option<f64>,
     /// Likewise for the pressure, in Pa.
     pub pressure_play_pa: Option<f64>,
+    /// What is assumed of bladder, friction and standstill; what is left open is judged by the recordings.
+    pub assumed: Assumed,
     /// Go on where an instrument fault is suspected.
     pub accept_implausible: bool,
     /// Show what the columns reach without bounds.
@@ -71,6 +74,8 @@ pub struct Identified {
     pub unidentifiable: Vec<Free>,
     /// Thresholds of the direction.
     pub thresholds: Thresholds,
+    /// Laws of friction at standstill that were compared, the one taken first.
+    pub laws: Vec<StandstillFit>,
     /// Estimation recordings.
     pub estimation: Vec<Prepared>,
     /// Validation recordings.
@@ -148,6 +153,7 @@ pub fn check(request: Request) -> Result<Checked, IdentifyError> {
         bladder_ratio: request.bladder_ratio,
         length_play_m: request.length_play_m,
         pressure_play_pa: request.pressure_play_pa,
+        assumed: request.assumed,
         unbounded: request.unbounded,
     })
 }
@@ -166,6 +172,7 @@ pub struct Checked {
     bladder_ratio: f64,
     length_play_m: Option<f64>,
     pressure_play_pa: Option<f64>,
+    assumed: Assumed,
     unbounded: bool,
 }
 
@@ -191,16 +198,19 @@ impl Checked {
         let validation = self.gates.split_off(self.n_estimation);
         let from_noise = thresholds(&self.gates, &self.muscle.muscle);
         let thresholds = Thresholds {
+            standstill: from_noise.standstill,
             length_m: self.length_play_m.unwrap_or(from_noise.length_m),
             pressure_pa: self.pressure_play_pa.unwrap_or(from_noise.pressure_pa),
         };
         let largest_n_per_m =
             self.gates.iter().map(|gate| gate.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
         let force_noise_n = self.force_noise_n();
-        let estimation = direct(std::mem::take(&mut self.gates), thresholds, self.form)?;
-        let validation = direct(validation, thresholds, self.form)?;
-
+        let mut estimation = direct(std::mem::take(&mut self.gates), thresholds, self.form)?;
         let columns = ForceColumns::new(&self.muscle.muscle, self.muscle.strand_modulus_pa, self.form, largest_n_per_m);
+        let laws = self.judge_standstill(&estimation, &columns, thresholds)?;
+        let thresholds = Thresholds { standstill: laws[0].standstill, ..thresholds };
+        redirect(&mut estimation, thresholds, self.form)?;
+        let validation = direct(validation, thresholds, self.form)?;
         let condensed = condense(&estimation, &columns, 1, None)?;
         enough(&estimation[0].recording.path, condensed.total.n_rows() as usize)?;
         let (space, unidentifiable) = self.search_space(&columns, &condensed, force_noise_n);
@@ -232,6 +242,7 @@ impl Checked {
             uncertainty,
             unidentifiable,
             thresholds,
+            laws,
             estimation,
             validation,
             estimation_fit,
@@ -245,6 +256,22 @@ impl Checked {
         };
         identified.warnings = report::warnings(&identified, &lags, &self.muscle);
         Ok(identified)
+    }
+
+    /// Laws of friction at standstill, the one to be taken first; only one where it is assumed or makes no difference.
+    fn judge_standstill(
+        &self,
+        estimation: &[Prepared],
+        columns: &ForceColumns,
+        thresholds: Thresholds,
+    ) -> Result<Vec<StandstillFit>, IdentifyError> {
+        match self.assumed.standstill {
+            Some(standstill) => Ok(vec![StandstillFit { standstill, rmse_n: f64::NAN }]),
+            None if self.form == Form::AsPrinted => {
+                Ok(vec![StandstillFit { standstill: thresholds.standstill, rmse_n: f64::NAN }])
+            }
+            None => standstill::judge(estimation, columns, thresholds),
+        }
     }
 
     /// White noise of the force over all estimation recordings.
@@ -264,17 +291,57 @@ impl Checked {
         ForceModel::new(muscle, self.muscle.strand_modulus_pa, self.form, parameters)
     }
 
-    /// What is moved, and what the recordings cannot identify.
+    /// What is moved, and what the recordings cannot identify. Twins whose shares the recordings do not tell are moved
+    /// together: `C₁₀` and `C₀₁` as their sum, both frictions as that of the bladder.
     fn search_space(&self, columns: &ForceColumns, condensed: &Condensed, noise_n: f64) -> (SearchSpace, Vec<Free>) {
+        let fixed = [Parameter::C10, Parameter::C01].into_iter().any(|parameter| self.fixes(parameter));
+        let judged = self.form == Form::Corrected;
+        let mut bladder = match self.assumed.bladder {
+            _ if fixed || self.free.contains(&Parameter::C01) => BladderLaw::Free,
+            Some(bladder) => bladder,
+            None => if judged { BladderLaw::Free } else { BladderLaw::Shared },
+        };
+        let mut friction = match self.assumed.friction {
+            _ if self.free.contains(&Parameter::StrandFriction) => FrictionLaw::Both,
+            Some(friction) => friction,
+            None => if judged { FrictionLaw::Both } else { FrictionLaw::Rubber },
+        };
+        loop {
+            let space = self.space_of(columns, bladder, friction);
+            let hopeless = self.hopeless(columns, condensed, &space, noise_n);
+            let lost = |parameter: Parameter| hopeless.contains(&Free::One(parameter));
+            let twins = lost(Parameter::C10) || lost(Parameter::C01);
+            let frictions = lost(Parameter::RubberFriction) || lost(Parameter::StrandFriction);
+            if bladder == BladderLaw::Free && self.assumed.bladder.is_none() && !fixed && twins {
+                bladder = BladderLaw::Shared;
+            } else if friction == FrictionLaw::Both && self.assumed.friction.is_none() && frictions {
+                friction = FrictionLaw::Rubber;
+            } else {
+                let mut space = space;
+                for &free in &hopeless {
+                    if let Some(index) = space.free.iter().position(|other| *other == free) {
+                        space.free.remove(index);
+                        space.ranges.remove(index);
+                    }
+                }
+                return (space, hopeless);
+            }
+        }
+    }
+
+    /// What these laws move.
+    fn space_of(&self, columns: &ForceColumns, bladder: BladderLaw, friction: FrictionLaw) -> SearchSpace {
         let modulus_pa = self.muscle.strand_modulus_pa;
         let mut free = vec![Free::One(Parameter::K1), Free::One(Parameter::K2), Free::One(Parameter::K3)];
-        if self.free.contains(&Parameter::C01) || self.fixes(Parameter::C10) || self.fixes(Parameter::C01) {
-            free.extend([Free::One(Parameter::C10), Free::One(Parameter::C01)]);
-        } else {
-            free.push(Free::BladderSum);
+        match bladder {
+            BladderLaw::Free => free.extend([Free::One(Parameter::C10), Free::One(Parameter::C01)]),
+            BladderLaw::Shared => free.push(Free::BladderSum),
         }
-        free.extend([Free::One(Parameter::StrandCompliance), Free::One(Parameter::RubberFriction)]);
-        if self.free.contains(&Parameter::StrandFriction) {
+        free.push(Free::One(Parameter::StrandCompliance));
+        if friction != FrictionLaw::Strands {
+            free.push(Free::One(Parameter::RubberFriction));
+        }
+        if friction != FrictionLaw::Rubber {
             free.push(Free::One(Parameter::StrandFriction));
         }
         // The square of the radius and k1 are one and the same in the gas term.
@@ -285,6 +352,9 @@ impl Checked {
         let mut held = BaseParameters { theta: [0.0; 8] };
         for parameter in Parameter::ALL {
             held.theta[parameter.index()] = Free::One(parameter).ranges(modulus_pa).nominal;
+        }
+        if friction == FrictionLaw::Strands {
+            held.theta[Parameter::RubberFriction.index()] = 0.0;
         }
         let sum_pa = Free::BladderSum.ranges(modulus_pa).nominal;
         held.theta[Parameter::C10.index()] = sum_pa / (1.0 + self.bladder_ratio);
@@ -301,18 +371,23 @@ impl Checked {
             }
         };
         let ranges = free.iter().map(range).collect();
-        let mut space = SearchSpace { free, ranges, held, bladder_ratio: self.bladder_ratio };
+        SearchSpace { free, ranges, held, bladder_ratio: self.bladder_ratio }
+    }
+
+    /// What of `space` the recordings cannot identify.
+    fn hopeless(
+        &self,
+        columns: &ForceColumns,
+        condensed: &Condensed,
+        space: &SearchSpace,
+        noise_n: f64,
+    ) -> Vec<Free> {
+        let modulus_pa = self.muscle.strand_modulus_pa;
         let center: Vec<f64> = (0..space.free.len()).map(|index| space.nominal_coordinate(index, modulus_pa)).collect();
-        let problem = ForceProblem { summary: &condensed.total, columns, space: &space, steps: &[] };
+        let problem = ForceProblem { summary: &condensed.total, columns, space, steps: &[] };
         let floor_n = (condensed.total.residual_floor_square_sum() / condensed.total.n_rows().max(1) as f64).sqrt();
-        let hopeless = excitation::unidentifiable(&problem, &center, noise_n.max(floor_n).max(1e-6));
-        let mut unidentifiable = Vec::new();
-        for index in (0..hopeless.len()).rev().filter(|&index| hopeless[index]) {
-            unidentifiable.push(space.free.remove(index));
-            space.ranges.remove(index);
-        }
-        unidentifiable.reverse();
-        (space, unidentifiable)
+        let held = excitation::unidentifiable(&problem, &center, noise_n.max(floor_n).max(1e-6));
+        space.free.iter().zip(held).filter(|(_, held)| *held).map(|(free, _)| *free).collect()
     }
 
     fn fixes(&self, parameter: Parameter) -> bool {
@@ -382,6 +457,7 @@ impl Checked {
                 })
                 .collect(),
             bladder_ratio: self.bladder_ratio,
+            assumed: self.assumed,
         }
     }
 }
@@ -488,6 +564,7 @@ impl Identified {
                 pressure_rate_pa_per_s: fastest(|prepared| prepared.quality.pressure_rate_pa_per_s),
             },
             direction: self.thresholds,
+            standstill_laws: if self.laws.len() > 1 { self.laws.clone() } else { Vec::new() },
             quality: prepared().map(|prepared| prepared.quality.clone()).collect(),
             search: SearchReport {
                 starts: self

@@ -21,5 +21,6 @@ pub mod problem;
 pub mod report;
 pub mod robust;
 pub mod search_space;
+pub mod standstill;
 pub mod unbounded;
 pub mod uncertainty;

@@ -1,6 +1,6 @@
 //! Recordings made ready for a fit: quality gate and direction of motion beside each.
 
-use pam_core::direction::{Direction, Driver, Thresholds};
+use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
 use pam_core::force::Form;
 use pam_core::muscle::Muscle;
 use pam_core::quality::{RecordingQuality, SensorEnds};
@@ -61,6 +61,7 @@ pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
     Thresholds {
         length_m: worst("length").max(1e-4 * muscle.rest_length_m),
         pressure_pa: worst("pressure").max(1e-3 * highest_pa),
+        standstill: Standstill::AT_ONCE,
     }
 }
 
@@ -70,19 +71,37 @@ pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn direct(gates: Vec<Gated>, thresholds: Thresholds, form: Form) -> Result<Vec<Prepared>, IdentifyError> {
     let ends = SensorEnds::of(gates.iter().map(|gate| &gate.quality));
-    let driver = if form == Form::AsPrinted { Driver::Pressure } else { Driver::Motion };
     gates
         .into_par_iter()
-        .map(|Gated { recording, quality }| {
-            let direction = || {
-                let mut direction = Direction::of(&recording, thresholds, driver)?;
-                ends.reached(&recording, &quality)?.into_iter().for_each(|rows| direction.leave_out(rows));
-                Ok(direction)
-            };
-            match direction() {
-                Ok(direction) => Ok(Prepared { recording, quality, direction }),
-                Err(reason) => Err(IdentifyError::Samples { path: recording.path, reason }),
-            }
+        .map(|Gated { recording, quality }| match directed(&recording, &quality, &ends, thresholds, form) {
+            Ok(direction) => Ok(Prepared { recording, quality, direction }),
+            Err(reason) => Err(IdentifyError::Samples { path: recording.path, reason }),
         })
         .collect()
+}
+
+/// Finds the directions of `recordings` anew under other `thresholds`.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn redirect(recordings: &mut [Prepared], thresholds: Thresholds, form: Form) -> Result<(), IdentifyError> {
+    let ends = SensorEnds::of(recordings.iter().map(|prepared| &prepared.quality));
+    recordings.par_iter_mut().try_for_each(|prepared| {
+        prepared.direction = directed(&prepared.recording, &prepared.quality, &ends, thresholds, form)
+            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+        Ok(())
+    })
+}
+
+fn directed(
+    recording: &Recording,
+    quality: &RecordingQuality,
+    ends: &SensorEnds,
+    thresholds: Thresholds,
+    form: Form,
+) -> std::io::Result<Direction> {
+    let driver = if form == Form::AsPrinted { Driver::Pressure } else { Driver::Motion };
+    let mut direction = Direction::of(recording, thresholds, driver)?;
+    ends.reached(recording, quality)?.into_iter().for_each(|rows| direction.leave_out(rows));
+    Ok(direction)
 }

@@ -88,6 +88,7 @@ fn identify(muscle: &TrueMuscle, seed: u64, noise: f64) -> ModelArtifact {
         bladder_ratio: LATEX_RATIO,
         length_play_m: None,
         pressure_play_pa: None,
+        assumed: pam_core::artifact::model::Assumed::default(),
         accept_implausible: false,
         unbounded: false,
     })

@@ -75,6 +75,7 @@ pub fn fit_shortly(muscle: MuscleFile, recording: Recording, accept_implausible:
         bladder_ratio: 0.89,
         length_play_m: None,
         pressure_play_pa: None,
+        assumed: pam_core::artifact::model::Assumed::default(),
         accept_implausible,
         unbounded: true,
     };

@@ -57,6 +57,7 @@ impl Calibration<'_> {
             // Those that a recording with noise has.
             length_play_m: Some(5.0 * self.white_factor * length_m),
             pressure_play_pa: Some(5.0 * self.white_factor * pressure_pa),
+            assumed: pam_core::artifact::model::Assumed::default(),
             accept_implausible: true,
             unbounded: false,
         };

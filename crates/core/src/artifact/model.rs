@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 pub use super::effect_entry::EffectEntry;
 use super::{ArtifactError, Input, Tool};
-use crate::direction::Thresholds;
+use crate::direction::{Standstill, Thresholds};
 use crate::effects::{AugmentedModel, Kind};
 use crate::force::{BaseParameters, ForceModel, Form, Parameter};
 use crate::muscle::Muscle;
@@ -51,6 +51,9 @@ pub struct ModelArtifact {
     pub domain: Domain,
     /// Thresholds of the direction of motion.
     pub direction: Thresholds,
+    /// Laws of friction at standstill that the recordings compared, the one taken first; none where one was assumed.
+    #[serde(default)]
+    pub standstill_laws: Vec<StandstillFit>,
     /// Quality gate of every recording.
     pub quality: Vec<RecordingQuality>,
     /// How the search went.
@@ -81,6 +84,56 @@ pub struct IdentifyConfig {
     pub fixed: Vec<FixedParameter>,
     /// `C₀₁ / C₁₀` that their sum is split by.
     pub bladder_ratio: f64,
+    /// What was assumed of the base; the recordings judged the rest.
+    #[serde(default)]
+    pub assumed: Assumed,
+}
+
+/// Hypotheses of the base that a user may force.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Assumed {
+    /// Law of the bladder.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bladder: Option<BladderLaw>,
+    /// Law of the friction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<FrictionLaw>,
+    /// Friction at standstill.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub standstill: Option<Standstill>,
+}
+
+/// How the two coefficients of the bladder are fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BladderLaw {
+    /// Their sum, shared at a fixed ratio.
+    Shared,
+    /// Each on its own.
+    Free,
+}
+
+/// Which friction of eq. 11 is fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrictionLaw {
+    /// That of the bladder (eq. 9).
+    Rubber,
+    /// That between strands (eq. 10).
+    Strands,
+    /// Both.
+    Both,
+}
+
+/// A hypothesis of the base beside another, judged by what the columns of eq. 11 leave.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StandstillFit {
+    /// Friction at standstill.
+    pub standstill: Standstill,
+    /// Root mean square of what is left, in N.
+    pub rmse_n: f64,
 }
 
 /// A parameter held at a value.
@@ -304,7 +357,7 @@ impl ModelArtifact {
         if dimensions.iter().any(|&value| value <= 0.0) || self.strand_modulus_pa <= 0.0 {
             return Err("a dimension of the muscle is not positive".to_owned());
         }
-        let Thresholds { length_m, pressure_pa } = self.direction;
+        let Thresholds { length_m, pressure_pa, .. } = self.direction;
         if length_m < 0.0 || pressure_pa < 0.0 {
             return Err(format!("a threshold of the direction is negative: {length_m} m, {pressure_pa} Pa"));
         }
@@ -387,6 +440,7 @@ mod tests {
                 freed: Vec::new(),
                 fixed: Vec::new(),
                 bladder_ratio: 0.89,
+                assumed: Assumed::default(),
             },
             seed: 1,
             geometry: nominal(),
@@ -415,7 +469,8 @@ mod tests {
                 length_rate_m_per_s: 0.03,
                 pressure_rate_pa_per_s: 2.9e5,
             },
-            direction: Thresholds { length_m: 150e-6, pressure_pa: 2.5e3 },
+            direction: Thresholds { length_m: 150e-6, pressure_pa: 2.5e3, standstill: Standstill::AT_ONCE },
+            standstill_laws: Vec::new(),
             quality: Vec::new(),
             search: SearchReport { starts: Vec::new(), converged: true, column_floor_rmse_n: 1.0 },
             unbounded: None,
@@ -479,7 +534,7 @@ mod tests {
     #[test]
     fn a_direction_that_flips_before_it_turns_is_refused() {
         let mut turned = artifact(vec![]);
-        turned.direction = Thresholds { length_m: 0.0, pressure_pa: 0.0 };
+        turned.direction = Thresholds { length_m: 0.0, pressure_pa: 0.0, standstill: Standstill::Held };
         turned.check().expect("no threshold is one");
         turned.direction.length_m = -1.0;
         assert_eq!(turned.check(), Err("a threshold of the direction is negative: -1 m, 0 Pa".to_owned()));

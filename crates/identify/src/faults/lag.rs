@@ -220,7 +220,7 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    use pam_core::direction::Thresholds;
+    use pam_core::direction::{Standstill, Thresholds};
     use pam_core::force::{BaseParameters, ForceModel, Form};
     use pam_core::muscle::MuscleFile;
     use pam_core::recording::{Recording, Repairs, Samples};
@@ -255,7 +255,7 @@ mod tests {
             repairs,
             ignored_columns: Vec::new(),
         };
-        let thresholds = Thresholds { length_m: 1e-4, pressure_pa: 1e3 };
+        let thresholds = Thresholds { length_m: 1e-4, pressure_pa: 1e3, standstill: Standstill::AT_ONCE };
         let prepared = direct(gate(vec![recording]).unwrap(), thresholds, Form::Corrected).unwrap();
         (prepared, ForceColumns::new(&muscle, 3e9, Form::Corrected, 3.5e5 * 0.25))
     }

@@ -1,0 +1,104 @@
+//! Which law the friction of a muscle follows while its length stands still, judged by its recordings.
+//!
+//! Every law gives the same columns of eq. 11 other signs of friction where the length rests and the pressure moves. The law
+//! that leaves least of the force, with weights free of bounds so that no start of a search matters, is taken; samples
+//! before the first motion, whose friction nobody knows, count without friction under every law.
+
+use std::io;
+
+use pam_core::artifact::model::StandstillFit;
+use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
+use pam_core::force::Form;
+use pam_core::force::columns::{ForceColumns, N_COLUMNS};
+use pam_core::recording::CHUNK_ROWS;
+use pam_optim::summary::{BLOCK_ROWS, Summary};
+use rayon::prelude::*;
+
+use crate::error::IdentifyError;
+use crate::prepare::Prepared;
+
+/// Pressures over which friction may turn over, in Pa; nothing for any change that is not noise.
+const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
+
+/// Rows that the laws are compared on, at most.
+const MOST_ROWS: usize = 60_000;
+
+/// Share of the mean square that a law must gain over friction that follows the pressure at once.
+const CLEARLY: f64 = 0.01;
+
+/// Every law with what it leaves, the one to be taken first.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn judge(
+    recordings: &[Prepared],
+    columns: &ForceColumns,
+    thresholds: Thresholds,
+) -> Result<Vec<StandstillFit>, IdentifyError> {
+    let laws: Vec<Standstill> =
+        OVER_PA.map(|over_pa| Standstill::Slides { over_pa }).into_iter().chain([Standstill::Held]).collect();
+    let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
+    let stride = n_rows.div_ceil(MOST_ROWS).max(1);
+    let judged: Result<Vec<StandstillFit>, IdentifyError> = laws
+        .into_par_iter()
+        .map(|standstill| {
+            let mut total = Summary::new(N_COLUMNS);
+            for prepared in recordings {
+                let part = condensed(prepared, columns, Thresholds { standstill, ..thresholds }, stride)
+                    .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+                total.merge(&part);
+            }
+            let mean_square = total.residual_floor_square_sum() / total.n_rows().max(1) as f64;
+            Ok(StandstillFit { standstill, rmse_n: mean_square.sqrt() })
+        })
+        .collect();
+    let mut judged = judged?;
+    let most_n = judged[0].rmse_n * (1.0 - CLEARLY).sqrt();
+    // As good is not better: what follows the pressure stays first where nothing clearly beats it.
+    judged.sort_by(|left, right| {
+        let rank = |judged: &StandstillFit| {
+            if judged.standstill == Standstill::AT_ONCE { judged.rmse_n.min(most_n) } else { judged.rmse_n }
+        };
+        rank(left).total_cmp(&rank(right))
+    });
+    Ok(judged)
+}
+
+fn condensed(
+    prepared: &Prepared,
+    columns: &ForceColumns,
+    thresholds: Thresholds,
+    stride: usize,
+) -> io::Result<Summary> {
+    debug_assert_eq!(columns.form(), Form::Corrected);
+    let direction = Direction::of(&prepared.recording, thresholds, Driver::Motion)?;
+    let width = N_COLUMNS + 1;
+    let mut summary = Summary::new(N_COLUMNS);
+    let mut block = vec![0.0; BLOCK_ROWS * width];
+    let mut filled = 0;
+    let samples = &prepared.recording.samples;
+    let mut row = 0;
+    while row < samples.n_rows() {
+        let chunk = samples.chunk(row / CHUNK_ROWS)?;
+        while row < chunk.first_row() + chunk.n_rows() {
+            let here = row - chunk.first_row();
+            if direction.is_settled(row) || !direction.is_known(row) {
+                let values = columns.row(chunk.pressure_pa()[here], chunk.length_m()[here], direction.sign(row));
+                let force_n = chunk.force_n()[here];
+                if force_n.is_finite() && values.iter().all(|value| value.is_finite()) {
+                    for (column, value) in values.iter().chain([&force_n]).enumerate() {
+                        block[column * BLOCK_ROWS + filled] = *value;
+                    }
+                    filled += 1;
+                    if filled == BLOCK_ROWS {
+                        summary.fold(&mut block, filled);
+                        filled = 0;
+                    }
+                }
+            }
+            row += stride;
+        }
+    }
+    summary.fold_part(&mut block, filled);
+    Ok(summary)
+}
