@@ -81,6 +81,7 @@ pub fn walk(
         let mut contraction = Onward::new(noise * thresholds.length_m, within_s);
         let mut slide =
             Onward::new(noise * (thresholds.length_m + rest_slide_m_per_pa * thresholds.pressure_pa), within_s);
+        let mut rest_slide = Onward::new(noise * rest_slide_m_per_pa * thresholds.pressure_pa, within_s);
         let mut by_pressure_m = 0.0;
         let mut at = 0;
         while at < rows.time_s.len() {
@@ -108,6 +109,8 @@ pub fn walk(
             let slide_speed_m_per_s = if resting { slide_m_per_pa * sharp_pressure.slope } else { -sharp_length.slope };
             let contraction_m = contraction.follow(shortened_m, -sharp_length.slope);
             let slide_m = slide.follow(shortened_m + by_pressure_m, slide_speed_m_per_s);
+            let rest_slide_m =
+                rest_slide.follow(by_pressure_m, if resting { slide_m_per_pa * sharp_pressure.slope } else { 0.0 });
             visit(Instant {
                 row,
                 moment: Moment {
@@ -124,6 +127,7 @@ pub fn walk(
                     direction: direction.sign(row),
                     came: false,
                     slide_m,
+                    rest_slide_m,
                     force_n: smooth_force_n,
                 },
                 force_n: choose(smooth_force_n, rows.force_n.get(at).copied().unwrap_or(0.0)),

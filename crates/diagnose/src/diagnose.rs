@@ -5,8 +5,8 @@ use pam_core::artifact::diagnosis::{
     Candidate, Coordinate, DiagnoseConfig, Evidence, Implausible, Isolability, NamedEffect, NextExperiment, Region,
     Verdict,
 };
-use pam_core::artifact::model::EffectEntry;
-use pam_core::effects::AugmentedModel;
+use pam_core::artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
+use pam_core::effects::{AugmentedModel, Term};
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
 use pam_identification::evaluate::evaluate;
@@ -17,6 +17,7 @@ use crate::error::DiagnoseError;
 use crate::isolability::isolability;
 use crate::joint::HeldOut;
 use crate::knocks::{self, Knocks};
+use crate::nuisance::MAP_ID;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::question::{Answer, Question};
 use crate::regions::{Place, concentrated};
@@ -136,7 +137,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     observer(done.get(), steps);
     let question = Question::new(&estimation, &model, limits);
     let Answer { track, found, knocks, sizes } = question.answer(track, &advance)?;
-    let setting = question.setting(&track);
+    let setting = question.setting(&track, &found.nuisance);
     let space = &question.space;
     observer(steps - 1, steps);
     let state = &found.best.state;
@@ -150,6 +151,11 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (effects, entries) = named(&setting, &found, &uncertainty, correlated, knocks.as_ref());
     let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
     let mut terms = state.terms();
+    let (effects, mut entries) = (effects, entries);
+    if let Some(map) = found.nuisance.map_term(&state.fit.nuisances, &track, &found.coordinates) {
+        entries.push(map_entry(&map));
+        terms.push(map);
+    }
     if let Some(knocks) = &knocks {
         terms.push(knocks.term());
         regions.insert(if effects[0].id == knocks::ID { 0 } else { regions.len() }, knocks.region(sizes.mismatch_n));
@@ -191,6 +197,17 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         config,
     };
     Ok(diagnosis)
+}
+
+/// The static map as a model artifact has it; its terms have no standard errors of their own.
+fn map_entry(map: &Term) -> EffectEntry {
+    let shapes = map.effect.shape().iter().map(|shape| (shape.name, shape.unit));
+    let amplitudes = map.effect.amplitudes().iter().map(|amplitude| (amplitude.name, amplitude.unit));
+    let parameters = shapes.chain(amplitudes).zip(map.shape.iter().chain(&map.amplitudes)).map(|((name, unit), &value)| {
+        let status = ParameterStatus::Fitted;
+        ParameterEntry { name: name.to_owned(), value, unit: unit.to_owned(), stderr: None, status }
+    });
+    EffectEntry { id: MAP_ID.to_owned(), parameters: parameters.collect() }
 }
 
 /// The mass behind `knocks`.
@@ -257,7 +274,7 @@ fn named(
             .map_or(page.test, |confusion| confusion.test);
         let evidence = found.taken.get(index).map_or_else(
             || evidence(&found.base.held_out, &found.best.held_out, found.first.len()),
-            |taken| evidence(&taken.without, &found.best.held_out, found.first.len()),
+            |taken| evidence(&taken.without, &taken.with, found.first.len()),
         );
         named.push(NamedEffect {
             id: page.id.to_owned(),
@@ -278,7 +295,7 @@ fn named(
 
 /// What became of every candidate of the first look.
 fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
-    let base = found.base.held_out.mean_square();
+    let base = found.whole.held_out.mean_square();
     let mismatch = (base - found.floor_square).max(f64::MIN_POSITIVE);
     let taken: Vec<&str> = found.best.state.guesses.iter().map(crate::hypothesis::Guess::id).collect();
     let rivals: Vec<&str> = (0..taken.len()).flat_map(|index| alternatives(found, index)).collect();
@@ -301,7 +318,7 @@ fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
             };
             Candidate {
                 id: id.to_owned(),
-                evidence: evidence(&found.base.held_out, &trial.held_out, found.first.len()),
+                evidence: evidence(&found.whole.held_out, &trial.held_out, found.first.len()),
                 explains,
                 outcome,
             }
@@ -322,8 +339,8 @@ fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) -> Vec<Region
         let coordinate = guess.effect.page().coordinate;
         let (log_ratio, p_value) = found.taken.get(index).map_or((0.0, 1.0), |taken| {
             (
-                taken.without.log_ratio(&found.best.held_out),
-                (chance(&taken.without, &found.best.held_out) * found.first.len() as f64).min(1.0),
+                taken.without.log_ratio(&taken.with),
+                (chance(&taken.without, &taken.with) * found.first.len() as f64).min(1.0),
             )
         });
         if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
@@ -333,7 +350,7 @@ fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) -> Vec<Region
     regions.sort_by(|left, right| right.0.total_cmp(&left.0));
     let mut out: Vec<Region> = regions.into_iter().map(|(_, region)| region).collect();
     let known: Vec<Coordinate> = out.iter().map(|region| region.coordinate).collect();
-    out.extend(telling(structured(setting, &found.base.state, found, paths), &known));
+    out.extend(telling(structured(setting, &found.whole.state, found, paths), &known));
     out
 }
 

@@ -256,6 +256,7 @@ impl Path {
                         direction,
                         came: true,
                         slide_m,
+                        rest_slide_m: 0.0,
                         force_n: 0.0,
                     },
                     force_n: base.force_n(pressure_pa, length_m, direction),

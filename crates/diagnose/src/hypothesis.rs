@@ -9,6 +9,19 @@ pub struct Guess {
     pub effect: &'static dyn Effect,
     /// Values of its shape parameters, SI.
     pub shape: Vec<f64>,
+    /// Which sign its amplitudes may have.
+    pub sign: Sign,
+}
+
+/// Which sign the amplitudes of an effect may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sign {
+    /// Any that the page allows.
+    Any,
+    /// None below zero.
+    Positive,
+    /// None above zero.
+    Negative,
 }
 
 impl Guess {
@@ -20,6 +33,20 @@ impl Guess {
     /// Whether it adds columns and leaves those of eq. 11 as they are.
     pub fn only_adds(&self) -> bool {
         self.effect.role() == Role::Pulls
+    }
+
+    /// Every sign that `effect` has to be tried with.
+    pub fn signs(effect: &dyn Effect) -> &'static [Sign] {
+        if effect.has_one_sign() { &[Sign::Positive, Sign::Negative] } else { &[Sign::Any] }
+    }
+
+    /// Ranges of its amplitudes.
+    pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.amplitudes().iter().map(|amplitude| match self.sign {
+            Sign::Any => amplitude.range,
+            Sign::Positive => (0.0, amplitude.range.1),
+            Sign::Negative => (amplitude.range.0, 0.0),
+        })
     }
 
     /// Parameters in which it is linear.
@@ -41,5 +68,5 @@ pub fn n_amplitudes(guesses: &[Guess]) -> usize {
 
 /// Ranges of the amplitudes of several guesses, in order.
 pub fn ranges(guesses: &[Guess]) -> Vec<(f64, f64)> {
-    guesses.iter().flat_map(|guess| guess.amplitudes()).map(|amplitude| amplitude.range).collect()
+    guesses.iter().flat_map(Guess::ranges).collect()
 }

@@ -14,7 +14,7 @@ use pam_core::artifact::diagnosis::Isolability;
 use pam_core::effects::{AugmentedModel, CATALOGUE, Effect, Role, Term};
 use rayon::prelude::*;
 
-use crate::hypothesis::Guess;
+use crate::hypothesis::{Guess, Sign};
 use crate::sheet::Ground;
 use crate::state::{Setting, State};
 use crate::tangent::{Tangent, dot, norm};
@@ -50,9 +50,9 @@ static TYPICAL: [Typical; 22] = [
     Typical { id: "slack", shapes: &[&[0.0, 0.0]], amplitudes: &[] },
     Typical { id: "pressure-lag", shapes: &[&[0.06]], amplitudes: &[] },
     Typical { id: "threshold-pressure", shapes: &[&[3e4]], amplitudes: &[] },
-    Typical { id: "end-taper", shapes: &[&[]], amplitudes: &[1.0] },
+    Typical { id: "end-taper", shapes: &[&[]], amplitudes: &[1.0, 0.0] },
     Typical { id: "braid-lockup", shapes: &[&[0.2, 0.008]], amplitudes: &[1e4] },
-    Typical { id: "presliding-hysteresis", shapes: &[&[1e-3]], amplitudes: &[] },
+    Typical { id: "presliding-hysteresis", shapes: &[&[1e-3, 1.0]], amplitudes: &[] },
     Typical { id: "rubber-hysteresis", shapes: &[&[2e-3]], amplitudes: &[5.0] },
     // Half of an f' of 1.2e-3.
     Typical { id: "stribeck", shapes: &[&[5e-3, 1.0]], amplitudes: &[6e-4] },
@@ -76,7 +76,7 @@ pub fn isolability(setting: &Setting<'_>, state: &State, noise_n: f64, n_indepen
         .iter()
         .enumerate()
         .flat_map(|(index, &effect)| {
-            shapes(setting, effect).into_iter().map(move |shape| (index, Guess { effect, shape }))
+            shapes(setting, effect).into_iter().map(move |shape| (index, Guess { effect, shape, sign: Sign::Any }))
         })
         .collect();
     // Each form with what is left of it, in the order of the catalogue.

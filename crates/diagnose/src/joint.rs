@@ -24,6 +24,8 @@ pub struct JointFit {
     pub at_bound: Vec<bool>,
     /// Weights of all columns.
     pub weights: Vec<f64>,
+    /// Coefficients of the nuisances.
+    pub nuisances: Vec<f64>,
     /// Parameters of eq. 11.
     pub parameters: BaseParameters,
     /// Amplitudes of the effects, in order.
@@ -77,8 +79,8 @@ pub struct Joint<'a> {
 impl Joint<'_> {
     /// Fits the blocks in which `takes` is true, from `start` (base coordinates; amplitudes start at zero).
     pub fn fit(&self, rows: &Extended<'_>, start: &[f64], takes: &dyn Fn(usize) -> bool) -> Option<JointFit> {
-        let summary = rows.summary(takes)?;
-        let problem = ForceProblem { summary: &summary, columns: self.columns, space: self.space, steps: self.ranges };
+        let reduced = rows.reduced(takes)?;
+        let problem = ForceProblem { summary: &reduced.summary, columns: self.columns, space: self.space, steps: self.ranges };
         let n_free = self.space.free.len();
         let mut x = start[..n_free].to_vec();
         for (index, &(low, high)) in self.ranges.iter().enumerate() {
@@ -98,6 +100,7 @@ impl Joint<'_> {
             amplitudes: weights[weights.len() - self.ranges.len()..].to_vec(),
             mean_square: 2.0 * polished.cost,
             at_bound: polished.at_bound,
+            nuisances: rows.nuisances(&reduced, &weights),
             weights,
             x: polished.x,
         })
@@ -130,7 +133,10 @@ impl Joint<'_> {
         let folds = self.fold_fits(rows, start, fold_of_block)?;
         let counts = rows.counts().to_vec();
         let blocks = (0..rows.n_blocks())
-            .map(|block| rows.square_sum(block, &folds[fold_of_block[block]].weights) / counts[block].max(1.0))
+            .map(|block| {
+                let fit = &folds[fold_of_block[block]];
+                rows.square_sum(block, &fit.weights, &fit.nuisances) / counts[block].max(1.0)
+            })
             .collect();
         Some(HeldOut { blocks, counts })
     }

@@ -2,7 +2,8 @@
 //!
 //! With `X = Z T` (`T` the triangle of all rows together, `Z` orthonormal columns) the products `ZᵀZ` of a block
 //! are of order one however ill-conditioned the columns of eq. 11 are, and so are those of any group of blocks. The force
-//! enters less what reference weights say. A triangle for a group of blocks follows from a Cholesky factorization, and
+//! enters less what reference weights say. Nuisances stand before the columns, so that a factorization eliminates them first:
+//! a fit of base and effects never sees them, and finds its way back to them afterwards. A triangle for a group of blocks follows from a Cholesky factorization, and
 //! candidates that only add columns are appended without touching the rows of eq. 11 again.
 
 use std::ops::Range;
@@ -11,11 +12,16 @@ use nalgebra::DMatrix;
 use pam_optim::summary::{BLOCK_ROWS, Summary};
 use rayon::prelude::*;
 
+use crate::nuisance::Nuisance;
 use crate::track::Track;
 
 /// Rows in coordinates in which they are well conditioned, with their products.
 #[derive(Debug, Clone)]
 pub struct Normal {
+    /// Nuisances, before the columns.
+    q: usize,
+    /// Prior precision of each.
+    precision: Vec<f64>,
     /// Columns.
     n: usize,
     /// `T`, `n × n`, row-major.
@@ -28,7 +34,7 @@ pub struct Normal {
     counted: Vec<usize>,
     /// Those of each block, as a range of the counted ones.
     of_block: Vec<Range<usize>>,
-    /// Products of the rows of each block, `(n + 1)²`.
+    /// Products of the rows of each block, `(q + n + 1)²`.
     products: Vec<DMatrix<f64>>,
     /// Rows of each block that count.
     counts: Vec<f64>,
@@ -42,12 +48,14 @@ pub struct Extended<'a> {
     added: usize,
     /// Scale of each added column, and of the force.
     scales: Vec<f64>,
-    /// Products of each block: columns, added columns, force.
+    /// Products of each block: nuisances, columns, added columns, force.
     products: Vec<DMatrix<f64>>,
 }
 
 impl Normal {
-    /// Normal equations of rows of `n` columns with the forces `force_n`, at the instants that `counted` says count.
+    /// Normal equations of rows of `n` columns with the forces `force_n`, at the instants that `counted` says count;
+    /// `slopes` is how much of the nuisances the load cell reads.
+    #[expect(clippy::too_many_arguments, reason = "rows, what they are compared with, and what counts")]
     pub fn new(
         track: &Track,
         columns: &[f64],
@@ -55,6 +63,8 @@ impl Normal {
         force_n: &[f64],
         counted: &[bool],
         reference: Vec<f64>,
+        nuisance: &Nuisance,
+        slopes: &[f64],
     ) -> Self {
         let width = n + 1;
         let residual = |at: usize| {
@@ -114,12 +124,24 @@ impl Normal {
             }
             row[n] = residual(at);
         });
+        let q = nuisance.n();
         let products = of_block
             .par_iter()
-            .map(|block| products_of(&rows[block.start * width..block.end * width], width))
+            .map(|block| {
+                let full = q + width;
+                let mut joined = vec![0.0; block.len() * full];
+                for (row, index) in joined.chunks_exact_mut(full).zip(block.clone()) {
+                    let at = listed[index];
+                    for (value, column) in row[..q].iter_mut().zip(nuisance.row(at)) {
+                        *value = slopes[at] * column;
+                    }
+                    row[q..].copy_from_slice(&rows[index * width..(index + 1) * width]);
+                }
+                products_of(&joined, full)
+            })
             .collect();
         let counts = of_block.iter().map(|block| block.len() as f64).collect();
-        Self { n, triangle, reference, rows, counted: listed, of_block, products, counts }
+        Self { q, precision: nuisance.precision.clone(), n, triangle, reference, rows, counted: listed, of_block, products, counts }
     }
 
     /// Rows of each block that count.
@@ -150,9 +172,9 @@ impl Normal {
         (0..n).map(|row| (row..n).map(|column| self.triangle[row * n + column] * slope[column]).sum()).collect()
     }
 
-    /// With `more` columns (row-major, `k` per row) behind.
-    pub fn extend(&self, more: &[f64], k: usize) -> Extended<'_> {
-        let width = self.n + 1;
+    /// With `more` columns (row-major, `k` per row) behind; `nuisance` and `slopes` are those that it was made with.
+    pub fn extend(&self, more: &[f64], k: usize, nuisance: &Nuisance, slopes: &[f64]) -> Extended<'_> {
+        let (q, width) = (self.q, self.n + 1);
         let scales: Vec<f64> = (0..k)
             .map(|column| {
                 let squares: f64 = self.counted.iter().map(|&at| more[at * k + column].powi(2)).sum();
@@ -160,21 +182,25 @@ impl Normal {
             })
             .collect();
         let inverse: Vec<f64> = scales.iter().map(|&scale| if scale > 0.0 { 1.0 / scale } else { 0.0 }).collect();
-        let total = width + k;
+        let total = q + width + k;
         let products: Vec<DMatrix<f64>> = self
             .of_block
             .par_iter()
             .zip(&self.products)
             .map(|(block, own)| {
                 let mut out = DMatrix::zeros(total, total);
-                // Columns, added columns, force: the force moves to the end.
-                let place = |index: usize| if index < self.n { index } else { total - 1 };
-                for i in 0..width {
-                    for j in 0..width {
+                // Nuisances, columns, added columns, force: the force moves to the end.
+                let place = |index: usize| if index < q + self.n { index } else { total - 1 };
+                for j in 0..q + width {
+                    for i in 0..q + width {
                         out[(place(i), place(j))] = own[(i, j)];
                     }
                 }
-                let mut cross = vec![0.0; k * width];
+                if k == 0 {
+                    return out;
+                }
+                let full = q + width;
+                let mut cross = vec![0.0; k * full];
                 let mut squares = vec![0.0; k * k];
                 let rows = self.rows[block.start * width..block.end * width].chunks_exact(width);
                 for (row, &at) in rows.zip(&self.counted[block.clone()]) {
@@ -183,7 +209,12 @@ impl Normal {
                         if value == 0.0 {
                             continue;
                         }
-                        for (sum, entry) in cross[column * width..(column + 1) * width].iter_mut().zip(row) {
+                        let (before, behind) = cross[column * full..(column + 1) * full].split_at_mut(q);
+                        let read = value * slopes[at];
+                        for (sum, entry) in before.iter_mut().zip(nuisance.row(at)) {
+                            *sum += read * entry;
+                        }
+                        for (sum, entry) in behind.iter_mut().zip(row) {
                             *sum += value * entry;
                         }
                         for other in 0..k {
@@ -192,18 +223,23 @@ impl Normal {
                     }
                 }
                 for column in 0..k {
-                    for i in 0..width {
-                        out[(self.n + column, place(i))] = cross[column * width + i];
-                        out[(place(i), self.n + column)] = cross[column * width + i];
+                    for i in 0..full {
+                        out[(q + self.n + column, place(i))] = cross[column * full + i];
+                        out[(place(i), q + self.n + column)] = cross[column * full + i];
                     }
                     for other in 0..k {
-                        out[(self.n + column, self.n + other)] = squares[column * k + other];
+                        out[(q + self.n + column, q + self.n + other)] = squares[column * k + other];
                     }
                 }
                 out
             })
             .collect();
         Extended { normal: self, added: k, scales, products }
+    }
+
+    /// With nothing behind.
+    pub fn alone(&self) -> Extended<'_> {
+        self.extend(&[], 0, &Nuisance::default(), &[])
     }
 }
 
@@ -247,10 +283,11 @@ impl Extended<'_> {
         &self.normal.counts
     }
 
-    /// The triangle that stands for the blocks in which `takes` is true; none where they do not determine one.
-    pub fn summary(&self, takes: &dyn Fn(usize) -> bool) -> Option<Summary> {
-        let (n, m) = (self.normal.n, self.n_columns());
-        let mut sum: DMatrix<f64> = DMatrix::zeros(m + 1, m + 1);
+    /// The triangle that stands for the blocks in which `takes` is true, with the way back to the nuisances that it is
+    /// without; none where they do not determine one.
+    pub fn reduced(&self, takes: &dyn Fn(usize) -> bool) -> Option<Reduced> {
+        let (q, n, m) = (self.normal.q, self.normal.n, self.n_columns());
+        let mut sum: DMatrix<f64> = DMatrix::zeros(q + m + 1, q + m + 1);
         let mut count = 0.0;
         for (block, product) in self.products.iter().enumerate() {
             if takes(block) {
@@ -258,24 +295,28 @@ impl Extended<'_> {
                 count += self.normal.counts[block];
             }
         }
-        let force_square = sum[(m, m)].max(f64::MIN_POSITIVE);
+        let force_square = sum[(q + m, q + m)].max(f64::MIN_POSITIVE);
+        for (index, precision) in self.normal.precision.iter().enumerate() {
+            sum[(index, index)] += precision;
+        }
         // A ridge far below anything that the data say: it keeps what they do not say at all finite.
-        for index in 0..m {
+        for index in q..q + m {
             sum[(index, index)] += 1e-11;
         }
-        sum[(m, m)] += 1e-12 * force_square;
+        sum[(q + m, q + m)] += 1e-12 * force_square;
         let factor = sum.cholesky()?.l().transpose();
         let width = m + 1;
         let mut triangle = vec![0.0; width * width];
         for row in 0..width {
             for column in row..width {
+                let entry = |k: usize| factor[(q + row, q + k)];
                 let value = if column < n {
                     // Through T, which is upper triangular as well.
-                    (row..=column).map(|k| factor[(row, k)] * self.normal.triangle[k * n + column]).sum()
+                    (row..=column).map(|k| entry(k) * self.normal.triangle[k * n + column]).sum()
                 } else if column < m {
-                    factor[(row, column)] * self.scales[column - n]
+                    entry(column) * self.scales[column - n]
                 } else {
-                    factor[(row, column)]
+                    entry(column)
                 };
                 triangle[row * width + column] = value;
             }
@@ -285,24 +326,51 @@ impl Extended<'_> {
             let back: f64 = (row..n).map(|column| triangle[row * width + column] * self.normal.reference[column]).sum();
             triangle[row * width + m] += back;
         }
-        Some(Summary::from_triangle(m, triangle, count as u64))
+        let summary = Summary::from_triangle(m, triangle, count as u64);
+        Some(Reduced { summary, back: factor.rows(0, q).into_owned() })
     }
 
-    /// Sum of squares of the residual of `weights` over one block.
-    pub fn square_sum(&self, block: usize, weights: &[f64]) -> f64 {
+    /// `weights` of the columns in the coordinates of the products, with `-1` for the force behind.
+    fn coordinates(&self, weights: &[f64]) -> Vec<f64> {
         let (n, m) = (self.normal.n, self.n_columns());
         let mut u = self.normal.coordinates(&weights[..n]);
         u.extend(weights[n..m].iter().zip(&self.scales).map(|(weight, scale)| weight * scale));
         u.push(-1.0);
+        u
+    }
+
+    /// The nuisances that go with `weights` in the fit that `reduced` stands for.
+    pub fn nuisances(&self, reduced: &Reduced, weights: &[f64]) -> Vec<f64> {
+        let q = self.normal.q;
+        let u = self.coordinates(weights);
+        let mut coefficients = vec![0.0; q];
+        for row in (0..q).rev() {
+            let entry = |column: usize| reduced.back[(row, column)];
+            let rest: f64 = u.iter().enumerate().map(|(column, value)| entry(q + column) * value).sum();
+            let behind: f64 = (row + 1..q).map(|column| entry(column) * coefficients[column]).sum();
+            coefficients[row] = -(rest + behind) / entry(row);
+        }
+        coefficients
+    }
+
+    /// Sum of squares of the residual of `weights` and `nuisances` over one block.
+    pub fn square_sum(&self, block: usize, weights: &[f64], nuisances: &[f64]) -> f64 {
+        let u = [nuisances, &self.coordinates(weights)].concat();
         let product = &self.products[block];
         let mut sum = 0.0;
-        for i in 0..=m {
-            let mut inner = 0.0;
-            for j in 0..=m {
-                inner += product[(i, j)] * u[j];
-            }
-            sum += u[i] * inner;
+        for (j, right) in u.iter().enumerate() {
+            let inner: f64 = product.column(j).iter().zip(&u).map(|(entry, left)| entry * left).sum();
+            sum += right * inner;
         }
         sum.max(0.0)
     }
+}
+
+/// A least-squares problem without the nuisances.
+#[derive(Debug, Clone)]
+pub struct Reduced {
+    /// What is left of it.
+    pub summary: Summary,
+    /// Rows of the factorization that belong to the nuisances.
+    back: DMatrix<f64>,
 }

@@ -9,6 +9,7 @@ use pam_identification::search_space::SearchSpace;
 use crate::base;
 use crate::error::DiagnoseError;
 use crate::knocks::{self, Knocks, Residual};
+use crate::nuisance::{self, Nuisance};
 use crate::search::{Found, Limits, search};
 use crate::state::Setting;
 use crate::track::Track;
@@ -51,8 +52,8 @@ impl<'a> Question<'a> {
         Self { estimation, model, limits, space, columns }
     }
 
-    /// What fits to `track` share.
-    pub fn setting<'b>(&'b self, track: &'b Track) -> Setting<'b> {
+    /// What fits to `track` share, beside `nuisance`.
+    pub fn setting<'b>(&'b self, track: &'b Track, nuisance: &'b Nuisance) -> Setting<'b> {
         Setting {
             track,
             columns: &self.columns,
@@ -60,6 +61,7 @@ impl<'a> Question<'a> {
             muscle: &self.model.geometry,
             strand_modulus_pa: self.model.strand_modulus_pa,
             only: None,
+            nuisance,
         }
     }
 
@@ -87,7 +89,7 @@ impl<'a> Question<'a> {
 
     fn search(&self, track: &Track, limits: &Limits, looked: &dyn Fn()) -> Result<(Found, Sizes), DiagnoseError> {
         let start = base::coordinates(self.model, &self.space);
-        let found = search(&self.setting(track), &start, &self.model.force_model(), limits, looked)
+        let found = search(&self.setting(track, &nuisance::NONE), &start, &self.model.force_model(), limits, looked)
             .ok_or_else(|| DiagnoseError::Undetermined { path: self.estimation[0].recording.path.clone() })?;
         let sizes = Sizes::of(&found, limits);
         Ok((found, sizes))

@@ -120,6 +120,7 @@ impl Rehearsal {
                 direction: point.direction,
                 came: true,
                 slide_m: muscle.rest_length_m - here.2 + slide_by_pressure_m,
+                rest_slide_m: slide_by_pressure_m,
                 force_n: force_n(reach.model, here.1, here.2, point.direction),
             };
             self.track.instants.push(Instant { row: at, moment, force_n: moment.force_n, knee: false, settled: true });
@@ -295,7 +296,7 @@ pub(crate) mod tests {
         }
 
         pub(crate) fn guess(&self, id: &str, shape: &[f64]) -> Guess {
-            Guess { effect: effect(id).expect("an id"), shape: shape.to_vec() }
+            Guess { effect: effect(id).expect("an id"), shape: shape.to_vec(), sign: crate::hypothesis::Sign::Any }
         }
 
         pub(crate) fn setting(&self) -> Setting<'_> {
@@ -306,6 +307,7 @@ pub(crate) mod tests {
                 muscle: &self.muscle,
                 strand_modulus_pa: 3e9,
                 only: None,
+                nuisance: &crate::nuisance::NONE,
             }
         }
     }

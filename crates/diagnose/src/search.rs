@@ -4,8 +4,10 @@ use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::{Kind, Seen};
 
 use crate::coordinates::Coordinates;
+use crate::forms;
 use crate::hypothesis::Guess;
 use crate::joint::HeldOut;
+use crate::nuisance::Nuisance;
 use crate::state::{Setting, State};
 use crate::structure::{Feature, Remainder, Structure, features, telling_force_n};
 use crate::trial::{self, Shapes, Trial};
@@ -38,6 +40,8 @@ pub struct Judged {
 pub struct Found {
     /// The base model alone.
     pub base: Judged,
+    /// The base model beside a static map.
+    pub whole: Judged,
     /// Base and effects; the base alone where nothing was taken.
     pub best: Judged,
     /// What was taken with, for each, what would be left without it (everything else refitted).
@@ -52,6 +56,8 @@ pub struct Found {
     pub floor_square: f64,
     /// Structure that is left.
     pub left: Option<Structure>,
+    /// What was in beside base and effects.
+    pub nuisance: Nuisance,
 }
 
 /// An effect that was taken.
@@ -59,6 +65,8 @@ pub struct Found {
 pub struct Taken {
     /// Mean squares over held-out blocks without it.
     pub without: HeldOut,
+    /// And with it.
+    pub with: HeldOut,
     /// Other effects in its place, best first.
     pub rivals: Vec<Trial>,
 }
@@ -74,7 +82,12 @@ const LEAST_LOG_RATIO: f64 = 1.0;
 /// sees: one that only adds a column takes up a little of whatever is left.
 const STRONG_LOG_RATIO: f64 = 3.0;
 
-/// Searches; calls `looked` behind every look at the catalogue.
+/// Searches; calls `looked` behind every look at the catalogue. `setting` has no nuisances yet.
+///
+/// Effects with a memory, of rate, time or instruments, are judged beside a free smooth static map, so that no misfit of
+/// eq. 11 can call one up or hide it, and beside other forms of what was named before, so that what is left of an effect is
+/// not taken for another one. Static effects are what parsimony says about that map: one that takes up nearly all that the
+/// map does, with one or two parameters.
 pub fn search(
     setting: &Setting<'_>,
     start: &[f64],
@@ -82,58 +95,135 @@ pub fn search(
     limits: &Limits,
     looked: &dyn Fn(),
 ) -> Option<Found> {
-    let base = judged(setting, setting.fit(Vec::new(), start, model)?)?;
-    let remainder = Remainder::of(setting, &base.state);
-    let mut coordinates = Coordinates::of(setting.track);
-    coordinates.replace(Coordinate::Force, telling_force_n(setting, &base.state, &remainder));
-    let features = features(setting, &coordinates);
     let track = setting.track;
+    let mut coordinates = Coordinates::of(track);
+    let of_recordings =
+        Nuisance::of_recordings(track, limits.sensor_floor_n).with_reversals(track, &coordinates, model);
+    let plain = &setting.beside(&of_recordings);
+    let base = judged(plain, plain.fit(Vec::new(), start, model)?)?;
+    let nuisance = plain.nuisance.with_map(track, &coordinates);
+    let mapped = plain.beside(&nuisance);
+    let mut best = judged(&mapped, mapped.fit_near(Vec::new(), &base.state)?)?;
+    let remainder = Remainder::of(&mapped, &best.state);
+    coordinates.replace(Coordinate::Force, telling_force_n(&mapped, &best.state, &remainder));
+    let features = features(setting, &coordinates);
     let seen = Seen::of(track.instants.iter().zip(&track.counted).filter(|(_, counted)| **counted).map(|(at, _)| at));
     let every: Vec<&Feature> = features.iter().collect();
     let unnamed = remainder.structure(&every);
-    let mut floor_square = base.held_out.mean_square();
+    let mut floor_square = best.held_out.mean_square();
     if let Some(unnamed) = &unnamed {
         floor_square = floor_square.min(unnamed.held_out.mean_square());
     }
-    let mut best = base.clone();
+    let whole = best.clone();
+    let allowed = |id: &str| !limits.excluded.iter().any(|excluded| excluded == id);
     let mut first = Vec::new();
     let mut promising = Shapes::new();
     let mut known = Shapes::new();
-    for round in 0..limits.max_effects {
-        let trials = trial::among(setting, &best.state, &best.held_out, &seen, &known, &|id| {
-            !limits.excluded.iter().any(|excluded| excluded == id)
-        });
+    let mut looks = 0;
+    while best.state.guesses.len() < limits.max_effects {
+        let formed = forms::with_forms(&mapped, &best.state, &coordinates, &nuisance);
+        let beside = mapped.beside(&formed);
+        let bent = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
+        let trials = trial::among(&beside, &bent.state, &bent.held_out, &seen, &known, &allowed);
         looked();
-        if round == 0 {
+        if looks == 0 {
             first.clone_from(&trials);
         }
+        looks += 1;
         known = promise(&trials).collect();
         promising.extend(known.clone());
         for trial in &trials {
             floor_square = floor_square.min(trial.held_out.mean_square());
         }
-        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &best, &base, floor_square, limits)) else {
+        if std::env::var_os("PAM_DEBUG").is_some() {
+            eprintln!("look {looks}: {:?} bent {:.4} best {:.4} floor² {:.4}", best.state.guesses, bent.held_out.mean_square(), best.held_out.mean_square(), floor_square);
+            for t in trials.iter().take(6) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
+        }
+        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &bent, &whole, floor_square, limits)) else {
             break;
         };
-        let Some(next) = settle(setting, &best, &chosen) else { break };
+        let Some(next) = settle(&mapped, &best, &chosen) else { break };
         best = next;
-        if round > 0 {
-            best = second_look(setting, best, &seen, &promising);
+        if looks > 1 {
+            best = second_look(&mapped, best, &seen, &promising);
         }
         floor_square = floor_square.min(best.held_out.mean_square());
     }
-    let whole = base.held_out.mean_square() - floor_square;
-    let best = at_rest(setting, polished(setting, without_stand_ins(setting, best, &features, whole))?)?;
+    let mut parsimonious = Vec::new();
+    while best.state.guesses.len() < limits.max_effects {
+        let Some(next) = static_effect(plain, &mapped, &best, &seen, &allowed, floor_square, limits) else { break };
+        parsimonious.push(next.state.guesses[next.state.guesses.len() - 1].id());
+        best = next;
+    }
+    let mismatch = whole.held_out.mean_square() - floor_square;
+    if parsimonious.is_empty() {
+        best = without_stand_ins(&mapped, best, &features, mismatch);
+    }
+    let best = at_rest(&mapped, polished(&mapped, best)?)?;
     let mut taken = Vec::new();
     for index in 0..best.state.guesses.len() {
-        let Some((without, rivals)) = without(setting, &best, index, &seen, &promising) else { continue };
-        taken.push(Taken { without: without.held_out, rivals });
+        let of_the_map = parsimonious.contains(&best.state.guesses[index].id());
+        let setting = if of_the_map { plain } else { &mapped };
+        let found = without(setting, &best, index, &seen, &promising);
+        let Some((without, rivals)) = found else { continue };
+        let with = if of_the_map { judged(plain, plain.fit_near(best.state.guesses.clone(), &best.state)?)? } else { best.clone() };
+        taken.push(Taken { without: without.held_out, with: with.held_out, rivals });
     }
-    let left = Remainder::of(setting, &best.state).structure(&every);
+    let (best, nuisance) = kept_map(plain, best, nuisance)?;
+    let mapped = plain.beside(&nuisance);
+    let left = Remainder::of(&mapped, &best.state).structure(&every);
     if let Some(left) = &left {
         floor_square = floor_square.min(left.held_out.mean_square());
     }
-    Some(Found { base, best, taken, first, coordinates, features, floor_square, left })
+    Some(Found { base, whole, best, taken, first, coordinates, features, floor_square, left, nuisance })
+}
+
+/// Share of the mean square over held-out blocks that the static map must take up to be kept.
+const WORTH_A_MAP: f64 = 0.02;
+
+/// `best` with the static map, or without where it gains nothing on held-out blocks.
+fn kept_map(plain: &Setting<'_>, best: Judged, map: Nuisance) -> Option<(Judged, Nuisance)> {
+    let bare = judged(plain, plain.fit_near(best.state.guesses.clone(), &best.state)?)?;
+    let keeps = best.held_out.mean_square() < (1.0 - WORTH_A_MAP) * bare.held_out.mean_square();
+    Some(if keeps { (best, map) } else { (bare, plain.nuisance.clone()) })
+}
+
+/// Share of what the static map takes up that a static effect must take up to be named in its place.
+const OF_THE_MAP: f64 = 0.8;
+
+/// `best` with the static effect that stands for the static map, if there is one.
+fn static_effect(
+    plain: &Setting<'_>,
+    mapped: &Setting<'_>,
+    best: &Judged,
+    seen: &Seen,
+    allowed: &(dyn Fn(&str) -> bool + Sync),
+    floor_square: f64,
+    limits: &Limits,
+) -> Option<Judged> {
+    let bare = judged(plain, plain.fit_near(best.state.guesses.clone(), &best.state)?)?;
+    let map = bare.held_out.mean_square() - best.held_out.mean_square();
+    let full_floor = floor_square + limits.sensor_floor_n.powi(2);
+    let matters = limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
+    if map < matters {
+        return None;
+    }
+    let statics = |id: &str| allowed(id) && pam_core::effects::effect(id).is_some_and(|effect| effect.is_static());
+    let trials = trial::among(plain, &bare.state, &bare.held_out, seen, &Shapes::new(), &statics);
+    if std::env::var_os("PAM_DEBUG").is_some() {
+        eprintln!("static: {:?} bare {:.4} map {:.4}", bare.state.guesses, bare.held_out.mean_square(), best.held_out.mean_square());
+        for t in trials.iter().take(6) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
+    }
+    let chosen = trials.into_iter().find(|trial| {
+        let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
+        gained > OF_THE_MAP * map && trial.log_ratio > LEAST_LOG_RATIO
+    })?;
+    let named = settle(plain, &bare, &chosen)?;
+    let gained = bare.held_out.mean_square() - named.held_out.mean_square();
+    if gained < OF_THE_MAP * map {
+        return None;
+    }
+    judged(mapped, mapped.fit_near(named.state.guesses.clone(), &named.state)?)
 }
 
 /// The trials that come anywhere near the best: what may stand in the place of what was taken.

@@ -8,7 +8,8 @@ use pam_identification::search_space::SearchSpace;
 
 use crate::hypothesis::{Guess, ranges};
 use crate::joint::{HeldOut, Joint, JointFit};
-use crate::normal::Normal;
+use crate::normal::{Extended, Normal};
+use crate::nuisance::Nuisance;
 use crate::sheet::{Ground, Sheet};
 use crate::track::Track;
 
@@ -34,6 +35,8 @@ pub struct Setting<'a> {
     pub strand_modulus_pa: f64,
     /// Instants that fits look at; none where all that count do.
     pub only: Option<&'a [bool]>,
+    /// What is always in beside base and effects.
+    pub nuisance: &'a Nuisance,
 }
 
 /// A hypothesis with its joint fit.
@@ -51,6 +54,8 @@ pub struct State {
     pub model: ForceModel,
     /// What the load cell reads, linear around the fit.
     pub read: Read,
+    /// What nuisances add at every instant, in N.
+    pub nuisance_n: Vec<f64>,
 }
 
 impl State {
@@ -104,10 +109,17 @@ impl Read {
 
     /// Linear around the forces that `weights` make of `sheet`, at the instants that count; the number of those whose slope
     /// changes by more than a little.
-    fn move_to(&mut self, memory: &mut dyn Memory, sheet: &Sheet, weights: &[f64], counted: &[bool]) -> usize {
+    fn move_to(
+        &mut self,
+        memory: &mut dyn Memory,
+        sheet: &Sheet,
+        weights: &[f64],
+        nuisance_n: &[f64],
+        counted: &[bool],
+    ) -> usize {
         let mut moved = 0;
         for at in (0..counted.len()).filter(|&at| counted[at]) {
-            let force_n = sheet.force_n(at, weights);
+            let force_n = sheet.force_n(at, weights) + nuisance_n[at];
             let slope = memory.slope(force_n);
             // What hardly shows is nothing: rows next to zero are none that a decomposition can be made of.
             let slope = if slope > LEAST_SLOPE { slope } else { 0.0 };
@@ -139,12 +151,17 @@ impl<'a> Setting<'a> {
         Self { only: Some(&self.track.sampled), ..*self }
     }
 
+    /// The same beside other nuisances.
+    pub fn beside<'b>(&'b self, nuisance: &'b Nuisance) -> Setting<'b> {
+        Setting { nuisance, ..*self }
+    }
+
     /// Instants that count.
     fn counted(&self) -> &[bool] {
         self.only.unwrap_or(&self.track.counted)
     }
 
-    fn ground(&self) -> Ground<'_> {
+    pub(crate) fn ground(&self) -> Ground<'_> {
         Ground { track: self.track, columns: self.columns, only: self.only }
     }
 
@@ -195,19 +212,23 @@ impl<'a> Setting<'a> {
                 let linear = reads.is_some().then(|| read.linear(&sheet, &force_n));
                 let (rows, measured) =
                     linear.as_ref().map_or((&sheet.columns, &force_n), |(rows, forces)| (rows, forces));
-                Normal::new(self.track, rows, sheet.width, measured, self.counted(), reference.clone())
+                let counted = self.counted();
+                let reference = reference.clone();
+                Normal::new(self.track, rows, sheet.width, measured, counted, reference, self.nuisance, &read.slopes)
             };
-            let fit = self.joint(&limits).fit_all(&normal.extend(&[], 0), &start)?;
+            let fit = self.joint(&limits).fit_all(&normal.alone(), &start)?;
+            let nuisance_n = self.nuisance.force_n(&fit.nuisances, self.track.n());
             // The last readings have not settled: this fit is under them.
             let settled = match &mut reads {
                 Some(memory) if rounds_left > 0 => {
-                    read.move_to(&mut **memory, &sheet, &fit.weights, self.counted()) * 2000 <= self.track.n()
+                    let counted = self.counted();
+                    read.move_to(&mut **memory, &sheet, &fit.weights, &nuisance_n, counted) * 2000 <= self.track.n()
                 }
                 _ => true,
             };
             if settled {
                 let model = self.model(&fit);
-                return Some(State { guesses, sheet, normal, fit, model, read });
+                return Some(State { guesses, sheet, normal, fit, model, read, nuisance_n });
             }
             start.clone_from(&fit.x);
             reference.clone_from(&fit.weights);
@@ -218,29 +239,33 @@ impl<'a> Setting<'a> {
     /// Fits of `state` that each leave one fold out.
     pub fn fold_fits(&self, state: &State) -> Option<Vec<JointFit>> {
         let limits = ranges(&state.guesses);
-        let rows = state.normal.extend(&[], 0);
+        let rows = state.normal.alone();
         self.joint(&limits).fold_fits(&rows, &state.fit.x, &self.track.fold_of_block)
     }
 
     /// Mean squares of `state` over held-out blocks.
     pub fn hold_out(&self, state: &State) -> Option<HeldOut> {
         let limits = ranges(&state.guesses);
-        self.joint(&limits).hold_out(&state.normal.extend(&[], 0), &state.fit.x, &self.track.fold_of_block)
+        self.joint(&limits).hold_out(&state.normal.alone(), &state.fit.x, &self.track.fold_of_block)
     }
 
     /// Joint fit of `state` and one more guess that only adds.
     pub fn fit_more(&self, state: &State, guess: &Guess) -> Option<JointFit> {
         let (rows, limits) = self.more(state, guess);
-        self.joint(&limits).fit_all(&state.normal.extend(&rows, guess.amplitudes().len()), &state.fit.x)
+        self.joint(&limits).fit_all(&self.extended(state, &rows, guess), &state.fit.x)
     }
 
     /// Joint fit of `state` and one more guess that only adds, and its mean squares over held-out blocks.
     pub fn weigh_more(&self, state: &State, guess: &Guess) -> Option<(JointFit, HeldOut)> {
         let (rows, limits) = self.more(state, guess);
-        let rows = state.normal.extend(&rows, guess.amplitudes().len());
+        let rows = self.extended(state, &rows, guess);
         let joint = self.joint(&limits);
         let held_out = joint.hold_out(&rows, &state.fit.x, &self.track.fold_of_block)?;
         Some((joint.fit_all(&rows, &state.fit.x)?, held_out))
+    }
+
+    fn extended<'b>(&self, state: &'b State, rows: &[f64], guess: &Guess) -> Extended<'b> {
+        state.normal.extend(rows, guess.amplitudes().len(), self.nuisance, &state.read.slopes)
     }
 
     /// Columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes.
@@ -248,7 +273,7 @@ impl<'a> Setting<'a> {
         let rows = self.ground().more_columns(&state.sheet, guess, &state.model);
         let rows = state.read.scaled(rows, guess.amplitudes().len());
         let mut limits = ranges(&state.guesses);
-        limits.extend(guess.amplitudes().iter().map(|amplitude| amplitude.range));
+        limits.extend(guess.ranges());
         (rows, limits)
     }
 
@@ -260,7 +285,7 @@ impl<'a> Setting<'a> {
             .iter()
             .enumerate()
             .map(|(at, instant)| {
-                let model_n = state.sheet.force_n(at, &state.fit.weights);
+                let model_n = state.sheet.force_n(at, &state.fit.weights) + state.nuisance_n[at];
                 instant.force_n - read.slopes[at] * model_n - read.offsets_n[at]
             })
             .collect()

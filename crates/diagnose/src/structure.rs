@@ -206,6 +206,8 @@ pub struct Remainder {
     /// Orthonormal directions that the parameters can move the model in, and the residual: `n_directions + 1` per row.
     rows: Vec<f64>,
     n_directions: usize,
+    /// Ridge of each direction.
+    ridges: Vec<f64>,
     blocks: Vec<Range<usize>>,
     fold_of_block: Vec<usize>,
     counts: Vec<f64>,
@@ -228,15 +230,22 @@ impl Remainder {
         }
         // Orthonormal in weight space is orthonormal over the rows: the columns of Z are.
         let q = if free.is_empty() { directions } else { directions.qr().q() };
-        let n_directions = q.ncols();
+        let n_own = q.ncols();
+        let nuisance = setting.nuisance;
+        let n_directions = n_own + nuisance.n();
+        let mut ridges = vec![1e-6; n_own];
+        ridges.extend_from_slice(&nuisance.precision);
         let residuals_n = setting.residuals_n(state);
         let n = setting.track.n();
         let counted = setting.track.counted.clone();
         let mut rows = vec![0.0; n * (n_directions + 1)];
         for (at, columns) in state.normal.rows() {
             let row = &mut rows[at * (n_directions + 1)..(at + 1) * (n_directions + 1)];
-            for (direction, value) in row[..n_directions].iter_mut().enumerate() {
+            for (direction, value) in row[..n_own].iter_mut().enumerate() {
                 *value = columns[..width].iter().zip(q.column(direction).iter()).map(|(a, b)| a * b).sum();
+            }
+            for (value, column) in row[n_own..n_directions].iter_mut().zip(nuisance.row(at)) {
+                *value = state.read.slopes[at] * column;
             }
             row[n_directions] = residuals_n[at];
         }
@@ -244,6 +253,7 @@ impl Remainder {
         Self {
             rows,
             n_directions,
+            ridges,
             blocks: setting.track.blocks.clone(),
             fold_of_block: setting.track.fold_of_block.clone(),
             counts: state.normal.counts().to_vec(),
@@ -308,7 +318,7 @@ impl Remainder {
         let (&residual, columns) = kept.split_last()?;
         let mut left = sum.select_columns(columns).select_rows(columns);
         for (index, &column) in columns.iter().enumerate() {
-            left[(index, index)] += if column < self.n_directions { 1e-6 } else { RIDGE };
+            left[(index, index)] += self.ridges.get(column).copied().unwrap_or(RIDGE);
         }
         let right = DVector::from_iterator(columns.len(), columns.iter().map(|&column| sum[(column, residual)]));
         Some(left.cholesky()?.solve(&right))

@@ -66,7 +66,10 @@ pub fn among(
                 Some(shape) => vec![shape.clone()],
                 None => effect.first_shapes(seen),
             };
-            shapes.into_iter().map(move |shape| (index, Guess { effect, shape }))
+            let signs = Guess::signs(effect);
+            shapes.into_iter().flat_map(move |shape| {
+                signs.iter().map(move |&sign| (index, Guess { effect, shape: shape.clone(), sign }))
+            })
         })
         .collect();
     let residuals_n = setting.residuals_n(state);

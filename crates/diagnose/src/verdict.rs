@@ -26,8 +26,6 @@ pub struct Sizes {
 const MOST_LEFT: f64 = 0.3;
 /// The same of what matters by itself: less is what the form of an effect that is otherwise right leaves of it.
 const LEAST_LEFT: f64 = 0.08;
-/// Share of a consistent residual (mean squares) that may be structured.
-const MOST_STRUCTURED: f64 = 0.3;
 /// The same for an effect that the catalogue says it is confused with.
 const DECLARED_RIVAL: f64 = 0.6;
 /// A rival that reaches this share of the evidence cannot be told from what was named.
@@ -40,7 +38,7 @@ impl Sizes {
         let excess = |square: f64, below: f64| (square - below).max(0.0).sqrt();
         let best = found.best.held_out.mean_square();
         let left_n = found.left.as_ref().map_or(0.0, |left| excess(best, left.held_out.mean_square()));
-        let base = found.base.held_out.mean_square();
+        let base = found.whole.held_out.mean_square();
         Self {
             structured_share: (excess(base, found.floor_square).powi(2) / base.max(f64::MIN_POSITIVE)).min(1.0),
             limited: limits.matters_above_n.is_some(),
@@ -68,10 +66,7 @@ pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
     let more_than = |times: f64, share: f64| sizes.left_n > times * sizes.matters_n && sizes.share_left() > share;
     let structured = more_than(0.5, MOST_LEFT) || more_than(1.0, LEAST_LEFT);
     if found.best.state.guesses.is_empty() && !knocks {
-        // The floor is an upper bound: smooth functions may not follow all that is there. So what they do follow must not be
-        // much of the residual, either.
-        let telling = !sizes.limited && sizes.structured_share > MOST_STRUCTURED;
-        return if sizes.mismatch_n > sizes.matters_n || telling { Verdict::Unexplained } else { Verdict::Consistent };
+        return if sizes.mismatch_n > sizes.matters_n { Verdict::Unexplained } else { Verdict::Consistent };
     }
     if structured {
         Verdict::Unexplained
@@ -84,9 +79,9 @@ pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
 
 /// Ids of the effects that cannot be told from effect `index`.
 pub fn alternatives(found: &Found, index: usize) -> Vec<&'static str> {
-    let Some(Taken { without, rivals }) = found.taken.get(index) else { return Vec::new() };
-    let own = without.log_ratio(&found.best.held_out);
-    let gained = without.mean_square() - found.best.held_out.mean_square();
+    let Some(Taken { without, with, rivals }) = found.taken.get(index) else { return Vec::new() };
+    let own = without.log_ratio(with);
+    let gained = without.mean_square() - with.mean_square();
     rivals
         .iter()
         .filter(|rival| rival.guess.id() != found.best.state.guesses[index].id())

@@ -30,6 +30,10 @@ impl Effect for BraidLockup {
         Role::Pulls
     }
 
+    fn is_static(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }

@@ -18,6 +18,7 @@ use super::rate_dependent_hysteresis::RateDependentHysteresis;
 use super::rubber_hysteresis::RubberHysteresis;
 use super::series_compliance::SeriesCompliance;
 use super::slack::Slack;
+use super::static_map::StaticMap;
 use super::stribeck::Stribeck;
 use super::thermal_softening::ThermalSoftening;
 use super::threshold_pressure::ThresholdPressure;
@@ -50,9 +51,12 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &ForceStep,
 ];
 
-/// The effect with a catalogue id.
+/// What a model may carry beside eq. 11 that has no name in physics; a diagnosis never names it.
+pub static NAMELESS: &[&dyn Effect] = &[&StaticMap];
+
+/// The effect with an id of the catalogue, or of what has no name.
 pub fn effect(id: &str) -> Option<&'static dyn Effect> {
-    CATALOGUE.iter().copied().find(|effect| effect.page().id == id)
+    CATALOGUE.iter().chain(NAMELESS).copied().find(|effect| effect.page().id == id)
 }
 
 #[cfg(test)]
@@ -288,6 +292,7 @@ mod tests {
                         direction: [-1.0, 0.0, 1.0][index % 3],
                         came: index % 2 == 0,
                         slide_m: generator.random_range(-0.01..0.1),
+                        rest_slide_m: generator.random_range(-1e-3..1e-3),
                         force_n: generator.random_range(-50.0..900.0),
                     };
                     memory.sees(&mut now);

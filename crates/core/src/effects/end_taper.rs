@@ -30,6 +30,10 @@ impl Effect for EndTaper {
         Role::Pulls
     }
 
+    fn is_static(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }
@@ -39,7 +43,10 @@ impl Effect for EndTaper {
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "cotangent_of_taper", unit: "1", range: (0.0, 20.0) }]
+        &[
+            Amplitude { name: "cotangent_of_taper", unit: "1", range: (-20.0, 20.0) },
+            Amplitude { name: "bulge_of_taper", unit: "1", range: (-40.0, 40.0) },
+        ]
     }
 
     fn start(&self, muscle: &Muscle, _shape: &[f64]) -> Box<dyn Memory> {
@@ -59,7 +66,9 @@ impl Memory for State {
         let slope = self.kinematics.diameter_slope(now.length_m, diameter_m);
         // A muscle narrower than its fittings does not taper towards them.
         let wider_m = (diameter_m - self.fitting_m).max(0.0);
-        columns[0] = now.pressure_pa * FRAC_PI_2 * diameter_m * wider_m * slope;
+        let cone_n = now.pressure_pa * FRAC_PI_2 * diameter_m * wider_m * slope;
+        columns[0] = cone_n;
+        columns[1] = cone_n * wider_m / self.fitting_m;
     }
 }
 

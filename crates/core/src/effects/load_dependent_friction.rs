@@ -22,6 +22,10 @@ impl Effect for LoadDependentFriction {
         Role::Pulls
     }
 
+    fn is_static(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }

@@ -38,6 +38,7 @@ mod rate_dependent_hysteresis;
 mod rubber_hysteresis;
 mod series_compliance;
 mod slack;
+pub mod static_map;
 mod stribeck;
 mod thermal_softening;
 mod threshold_pressure;
@@ -45,7 +46,7 @@ mod viscoelastic_relaxation;
 mod viscous_damping;
 
 pub use augmented::{AugmentedMemory, AugmentedModel, Term};
-pub use catalogue::{CATALOGUE, effect};
+pub use catalogue::{CATALOGUE, NAMELESS, effect};
 pub use inertia::Mount;
 pub use moment::{Base, Moment};
 pub use page::{Page, Symbol};
@@ -169,6 +170,17 @@ pub trait Effect: Sync {
     /// effects before.
     fn details(&self, _shape: &[f64]) -> Vec<Vec<f64>> {
         Vec::new()
+    }
+
+    /// Whether all its amplitudes have the same sign, whichever it is.
+    fn has_one_sign(&self) -> bool {
+        false
+    }
+
+    /// Whether it changes the force over pressure, length and direction alone, without a memory: a smooth static map can
+    /// stand in for it.
+    fn is_static(&self) -> bool {
+        false
     }
 
     /// Whether its pull needs the slopes of [`Base`], which cost four more evaluations of eq. 11.

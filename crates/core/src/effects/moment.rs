@@ -35,6 +35,8 @@ pub struct Moment {
     /// How far the braid has slid, rising while it contracts: the smooth contraction in metres, and where the length stands
     /// still [`ForceModel::slide_m_per_pa`] times the pressure.
     pub slide_m: f64,
+    /// The part of it that pressure has made where the length stood still, in m.
+    pub rest_slide_m: f64,
     /// Force as measured, smooth, where it was measured; as the model had it a moment ago elsewhere.
     pub force_n: f64,
 }
@@ -90,6 +92,7 @@ impl Moment {
             direction,
             came: true,
             slide_m: muscle.rest_length_m - length_m,
+            rest_slide_m: 0.0,
             force_n: 0.0,
         }
     }
@@ -156,6 +159,7 @@ pub(super) mod tests {
             direction: 1.0,
             came: true,
             slide_m: 0.027,
+            rest_slide_m: 0.0,
             force_n: 350.0,
         }
     }

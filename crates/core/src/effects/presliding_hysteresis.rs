@@ -28,24 +28,31 @@ impl Effect for PreslidingHysteresis {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape {
-            name: "slip_distance_m",
-            unit: "m",
-            range: (5e-5, 2e-2),
-            grid: &[2e-4, 5e-4, 1e-3, 2e-3, 4e-3, 8e-3],
-        }]
+        &[
+            Shape {
+                name: "slip_distance_m",
+                unit: "m",
+                range: (5e-5, 2e-2),
+                grid: &[2e-4, 5e-4, 1e-3, 2e-3, 4e-3, 8e-3],
+            },
+            Shape { name: "slide_at_rest", unit: "1", range: (0.0, 20.0), grid: &[0.0, 1.0] },
+        ]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State(Follower::new(shape[0])))
+        Box::new(State { follower: Follower::new(shape[0]), slide_at_rest: shape[1] })
     }
 }
 
-struct State(Follower);
+struct State {
+    follower: Follower,
+    slide_at_rest: f64,
+}
 
 impl Memory for State {
     fn slides(&mut self, now: &Moment) -> f64 {
-        self.0.follow(now, now.slide_m, now.direction)
+        let slide_m = now.slide_m + (self.slide_at_rest - 1.0) * now.rest_slide_m;
+        self.follower.follow(now, slide_m, now.direction)
     }
 }
 

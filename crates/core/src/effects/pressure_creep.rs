@@ -29,6 +29,10 @@ impl Effect for PressureCreep {
         Role::Pulls
     }
 
+    fn has_one_sign(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }
@@ -42,9 +46,9 @@ impl Effect for PressureCreep {
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
-            Amplitude { name: "overstress", unit: "1", range: (0.0, 0.5) },
-            Amplitude { name: "slow_overstress", unit: "1", range: (0.0, 0.5) },
-            Amplitude { name: "slowest_overstress", unit: "1", range: (0.0, 0.5) },
+            Amplitude { name: "overstress", unit: "1", range: (-0.5, 0.5) },
+            Amplitude { name: "slow_overstress", unit: "1", range: (-0.5, 0.5) },
+            Amplitude { name: "slowest_overstress", unit: "1", range: (-0.5, 0.5) },
         ]
     }
 

@@ -25,6 +25,10 @@ impl Effect for SeriesCompliance {
         Role::Sees
     }
 
+    fn is_static(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Fixture
     }

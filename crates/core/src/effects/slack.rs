@@ -37,6 +37,10 @@ impl Effect for Slack {
         Role::Reads
     }
 
+    fn is_static(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }

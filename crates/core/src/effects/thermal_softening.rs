@@ -38,7 +38,7 @@ impl Effect for ThermalSoftening {
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "softening_per_kilowatt", unit: "1", range: (0.0, MOST) }]
+        &[Amplitude { name: "softening_per_kilowatt", unit: "1", range: (-MOST, MOST) }]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {

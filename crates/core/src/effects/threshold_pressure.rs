@@ -25,6 +25,10 @@ impl Effect for ThresholdPressure {
         Role::Sees
     }
 
+    fn is_static(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }

@@ -79,6 +79,7 @@ fn separation(
         muscle: setting.muscle,
         strand_modulus_pa: setting.strand_modulus_pa,
         only: None,
+        nuisance: &crate::nuisance::NONE,
     };
     let runs: Vec<Run> = explanations
         .par_iter()

@@ -1,0 +1,71 @@
+//! Other forms of the effects that were named: how each could differ from what its page says.
+//!
+//! An effect in nature hardly ever has exactly the form of its page: a bristle is no exponential, two branches are no three.
+//! What that leaves must not be taken for another effect. So before anything else is named, every effect bends: its shape
+//! to either side, and its size with pressure, with contraction and with the direction of friction.
+
+use pam_core::artifact::diagnosis::Coordinate;
+use pam_core::effects::Kind;
+
+use crate::coordinates::Coordinates;
+use crate::hypothesis::Guess;
+use crate::nuisance::{Nuisance, over_range};
+use crate::state::{Setting, State};
+
+/// By how much a shape bends to either side.
+const FACTORS: [f64; 2] = [0.5, 2.0];
+
+/// `nuisance` with the other forms of everything that was named in `state`.
+pub fn with_forms(setting: &Setting<'_>, state: &State, coordinates: &Coordinates, nuisance: &Nuisance) -> Nuisance {
+    let mut out = nuisance.clone();
+    for place in 0..state.guesses.len() {
+        if state.guesses[place].effect.kind() != Kind::Event {
+            out = out.with_forms(place, forms_n(setting, state, coordinates, place), &setting.track.counted);
+        }
+    }
+    out
+}
+
+/// Force of the other forms of the effect at `place`, each less what it adds as it is named, in N at every instant.
+fn forms_n(setting: &Setting<'_>, state: &State, coordinates: &Coordinates, place: usize) -> Vec<Vec<f64>> {
+    let whole_n = force_n(setting, state, &state.guesses);
+    let guess = &state.guesses[place];
+    let mut without = state.guesses.clone();
+    without.remove(place);
+    let n_before: usize = state.guesses[..place].iter().map(|guess| guess.amplitudes().len()).sum();
+    let rest_n = partial_n(setting, state, &without, n_before, guess.amplitudes().len());
+    let own_n: Vec<f64> = whole_n.iter().zip(&rest_n).map(|(whole, rest)| whole - rest).collect();
+    let mut forms = Vec::new();
+    for (parameter, shape) in guess.effect.shape().iter().enumerate() {
+        for factor in FACTORS {
+            let mut guesses = state.guesses.clone();
+            let value = guess.shape[parameter];
+            let bent = if value == 0.0 { continue } else { factor * value };
+            guesses[place].shape[parameter] = bent.clamp(shape.range.0, shape.range.1);
+            let bent_n = force_n(setting, state, &guesses);
+            forms.push(bent_n.iter().zip(&whole_n).map(|(bent, whole)| bent - whole).collect());
+        }
+    }
+    let track = setting.track;
+    for kind in [Coordinate::Pressure, Coordinate::Contraction] {
+        let over = over_range(coordinates.of_kind(kind), &track.counted);
+        forms.push(own_n.iter().zip(&over).map(|(own, over)| own * over).collect());
+    }
+    forms.push(own_n.iter().zip(&track.instants).map(|(own, instant)| own * instant.moment.direction).collect());
+    forms
+}
+
+/// Force of `guesses` with the weights of `state`, in N at every instant.
+fn force_n(setting: &Setting<'_>, state: &State, guesses: &[Guess]) -> Vec<f64> {
+    let sheet = setting.ground().sheet(guesses, &state.model);
+    (0..setting.track.n()).map(|at| sheet.force_n(at, &state.fit.weights)).collect()
+}
+
+/// The same without `n` amplitudes from position `first` on.
+fn partial_n(setting: &Setting<'_>, state: &State, guesses: &[Guess], first: usize, n: usize) -> Vec<f64> {
+    let sheet = setting.ground().sheet(guesses, &state.model);
+    let mut weights = state.fit.weights.clone();
+    let from = pam_core::force::columns::N_COLUMNS + first;
+    weights.drain(from..from + n);
+    (0..setting.track.n()).map(|at| sheet.force_n(at, &weights)).collect()
+}

@@ -1,0 +1,233 @@
+//! What is always in beside base and effects, and is never named: columns with priors.
+//!
+//! | group          | columns                                                                              |
+//! |----------------|--------------------------------------------------------------------------------------|
+//! | static map     | products of Legendre polynomials in pressure and contraction, and the same times the direction of friction: what caliper, rubber and the form of eq. 11 leave of a smooth static force |
+//! | tare           | one constant per recording                                                           |
+//! | reversal       | friction within a tenth of a millimetre after each reversal: no strand turns over at once, and no length sensor tells when |
+//! | form of effect | changes of the shape of an effect that was named, and of its size over pressure and contraction |
+//!
+//! Every column has a root mean square of one newton over the instants that count (that of a tare where it is
+//! not zero), so that a coefficient is a size in newtons, and a prior precision in units of an instant's square: a
+//! coefficient is drawn to zero as by so many instants.
+
+use std::ops::Range;
+
+use pam_core::artifact::diagnosis::Coordinate;
+use pam_core::effects::static_map::{self, EVEN_DEGREE, ODD_DEGREE, legendre, scaled};
+use pam_core::effects::{Moment, Term, effect};
+use pam_core::force::ForceModel;
+use pam_core::force::rubber_friction::normal_force_n;
+
+use crate::coordinates::Coordinates;
+use crate::track::Track;
+
+/// A kind of nuisance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Group {
+    /// A smooth static force, the same in both directions.
+    EvenMap,
+    /// The same, with the sign of friction.
+    OddMap,
+    /// A constant per recording.
+    Tare,
+    /// Friction that turns over a little later than the length.
+    Reversal,
+    /// Other forms of a named effect, by its place among the guesses.
+    Form(usize),
+}
+
+/// Columns of nuisances over the instants of a track.
+#[derive(Debug, Clone, Default)]
+pub struct Nuisance {
+    n: usize,
+    /// Row-major, `n` per instant.
+    rows: Vec<f64>,
+    /// Prior precision of each column.
+    pub precision: Vec<f64>,
+    /// What each column was multiplied by.
+    scales: Vec<f64>,
+    /// Which columns belong together.
+    pub groups: Vec<(Group, Range<usize>)>,
+}
+
+/// No nuisances at all.
+pub static NONE: Nuisance = Nuisance { n: 0, rows: Vec::new(), precision: Vec::new(), scales: Vec::new(), groups: Vec::new() };
+
+/// Id of the static map in models.
+pub const MAP_ID: &str = "static-map";
+
+/// What the static map is a function of.
+const MAPPED: [Coordinate; 2] = [Coordinate::Pressure, Coordinate::Contraction];
+
+/// Travel in which friction turns over, in m: half of the least that pages call pre-sliding.
+const TURN_M: f64 = 1e-4;
+
+/// Prior precision of the static map and of forms: hardly any, enough to keep what the data do not see finite.
+const LOOSE: f64 = 20.0;
+
+/// Instants that share an error with one, about: half a second on the grid.
+const CORRELATED: f64 = 25.0;
+
+/// Tares of a load cell that is zeroed before a recording, in N.
+const TARE_N: f64 = 0.5;
+
+impl Nuisance {
+    /// Columns at each instant; none for no nuisances at all.
+    pub fn n(&self) -> usize {
+        self.n
+    }
+
+    /// Columns at instant `at`.
+    pub fn row(&self, at: usize) -> &[f64] {
+        &self.rows[at * self.n..(at + 1) * self.n]
+    }
+
+    /// What `coefficients` add at every one of `n_instants`, in N.
+    pub fn force_n(&self, coefficients: &[f64], n_instants: usize) -> Vec<f64> {
+        let sum = |at| self.row(at).iter().zip(coefficients).map(|(column, value)| column * value).sum();
+        (0..n_instants).map(sum).collect()
+    }
+
+    /// Root mean square of what `coefficients` of the groups that `takes` lets through add over the instants that count.
+    pub fn size_n(&self, coefficients: &[f64], counted: &[bool], takes: impl Fn(Group) -> bool) -> f64 {
+        let kept: Vec<usize> =
+            self.groups.iter().filter(|(group, _)| takes(*group)).flat_map(|(_, columns)| columns.clone()).collect();
+        let (mut squares, mut count) = (0.0, 0.0);
+        for at in (0..counted.len()).filter(|&at| counted[at]) {
+            let row = self.row(at);
+            squares += kept.iter().map(|&column| row[column] * coefficients[column]).sum::<f64>().powi(2);
+            count += 1.0;
+        }
+        (squares / f64::max(count, 1.0)).sqrt()
+    }
+
+    /// With `columns` (one vector each, over all instants) of `group` behind.
+    #[must_use]
+    pub fn with(&self, group: Group, columns: Vec<Vec<f64>>, counted: &[bool], precision: f64) -> Self {
+        let (columns, scales): (Vec<Vec<f64>>, Vec<f64>) =
+            columns.into_iter().map(|column| normalized(column, counted)).unzip();
+        let (before, more, n_instants) = (self.n, columns.len(), counted.len());
+        let n = before + more;
+        let mut rows = Vec::with_capacity(n * n_instants);
+        for at in 0..n_instants {
+            rows.extend_from_slice(&self.rows[at * before..(at + 1) * before]);
+            rows.extend(columns.iter().map(|column| column[at]));
+        }
+        let mut out = Self { n, rows, ..self.clone() };
+        out.scales.extend(scales);
+        out.precision.extend(std::iter::repeat_n(precision, more));
+        out.groups.push((group, before..n));
+        out
+    }
+
+    /// Without the groups that `takes` lets through.
+    #[must_use]
+    pub fn without(&self, takes: impl Fn(Group) -> bool) -> Self {
+        let kept: Vec<usize> =
+            self.groups.iter().filter(|(group, _)| !takes(*group)).flat_map(|(_, columns)| columns.clone()).collect();
+        let n_instants = if self.n > 0 { self.rows.len() / self.n } else { 0 };
+        let mut groups = Vec::new();
+        let mut from = 0;
+        for (group, columns) in self.groups.iter().filter(|(group, _)| !takes(*group)) {
+            groups.push((*group, from..from + columns.len()));
+            from += columns.len();
+        }
+        Self {
+            n: kept.len(),
+            rows: (0..n_instants).flat_map(|at| kept.iter().map(move |&column| self.row(at)[column])).collect(),
+            precision: kept.iter().map(|&column| self.precision[column]).collect(),
+            scales: kept.iter().map(|&column| self.scales[column]).collect(),
+            groups,
+        }
+    }
+
+    /// Forms of the effect at `place` among the guesses.
+    #[must_use]
+    pub fn with_forms(&self, place: usize, columns: Vec<Vec<f64>>, counted: &[bool]) -> Self {
+        self.with(Group::Form(place), columns, counted, LOOSE)
+    }
+
+    /// Tare of every recording; `floor_n` is what the sensors leave.
+    pub fn of_recordings(track: &Track, floor_n: f64) -> Self {
+        let n = track.n();
+        let variance = CORRELATED * floor_n * floor_n;
+        let mut out = Self::default();
+        if track.recordings.len() > 1 {
+            let tares = track.recordings.iter().map(|range| {
+                let mut column = vec![0.0; n];
+                column[range.clone()].fill(1.0);
+                column
+            });
+            out = out.with(Group::Tare, tares.collect(), &track.counted, variance / (TARE_N * TARE_N));
+        }
+        out
+    }
+
+    /// The same with friction that takes [`TURN_M`] to turn over.
+    #[must_use]
+    pub fn with_reversals(&self, track: &Track, coordinates: &Coordinates, model: &ForceModel) -> Self {
+        let travel_m = coordinates.of_kind(Coordinate::TravelSinceReversal);
+        let column = track.instants.iter().zip(travel_m).map(|(instant, travel_m)| {
+            let Moment { pressure_pa, length_m, direction, .. } = instant.moment;
+            let normal_n = normal_force_n(pressure_pa, model.kinematics().diameter_m(length_m), length_m);
+            direction * normal_n * (-travel_m / TURN_M).exp()
+        });
+        self.with(Group::Reversal, vec![column.collect()], &track.counted, LOOSE)
+    }
+
+    /// The same with a smooth static map.
+    #[must_use]
+    pub fn with_map(&self, track: &Track, coordinates: &Coordinates) -> Self {
+        let [pressure, contraction] =
+            MAPPED.map(|kind| over_range(coordinates.of_kind(kind), &track.counted));
+        let products = |least: usize, degree: usize, sign: &dyn Fn(usize) -> f64| {
+            let product = |(i, j): (usize, usize)| {
+                (0..track.n()).map(|at| sign(at) * legendre(i, pressure[at]) * legendre(j, contraction[at])).collect()
+            };
+            static_map::terms(least, degree).map(product).collect::<Vec<Vec<f64>>>()
+        };
+        let even = products(1, EVEN_DEGREE, &|_| 1.0);
+        let odd = products(0, ODD_DEGREE, &|at| track.instants[at].moment.direction);
+        self.with(Group::EvenMap, even, &track.counted, LOOSE).with(Group::OddMap, odd, &track.counted, LOOSE)
+    }
+
+    /// The static map with `coefficients` as a model carries it; none where there is no map.
+    pub fn map_term(&self, coefficients: &[f64], track: &Track, coordinates: &Coordinates) -> Option<Term> {
+        let columns = |wanted: Group| self.groups.iter().find(|(group, _)| *group == wanted).map(|(_, columns)| columns);
+        let (even, odd) = (columns(Group::EvenMap)?, columns(Group::OddMap)?);
+        let [(lowest_pa, highest_pa), (least, most)] =
+            MAPPED.map(|kind| range(coordinates.of_kind(kind), &track.counted));
+        Some(Term {
+            effect: effect(MAP_ID)?,
+            shape: vec![lowest_pa, highest_pa, least, most],
+            amplitudes: even.clone().chain(odd.clone()).map(|column| coefficients[column] * self.scales[column]).collect(),
+        })
+    }
+}
+
+/// With a root mean square of one over what counts and is not zero, and the factor for it; nothing where hardly anything is
+/// there.
+fn normalized(mut column: Vec<f64>, counted: &[bool]) -> (Vec<f64>, f64) {
+    let (mut squares, mut count) = (0.0, 0.0);
+    for (value, _) in column.iter().zip(counted).filter(|(value, counted)| **counted && **value != 0.0) {
+        squares += value * value;
+        count += 1.0;
+    }
+    let size = f64::sqrt(squares / f64::max(count, 1.0));
+    let scale = if size.is_finite() && size > 1e-9 { 1.0 / size } else { 0.0 };
+    column.iter_mut().for_each(|value| *value = if scale > 0.0 { *value * scale } else { 0.0 });
+    (column, scale)
+}
+
+/// Lowest and highest of `values` over what counts.
+fn range(values: &[f64], counted: &[bool]) -> (f64, f64) {
+    let kept = values.iter().zip(counted).filter(|(_, counted)| **counted);
+    kept.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, _)| (low.min(*value), high.max(*value)))
+}
+
+/// Between -1 and 1 over what counts, and no further elsewhere.
+pub(crate) fn over_range(values: &[f64], counted: &[bool]) -> Vec<f64> {
+    let (low, high) = range(values, counted);
+    values.iter().map(|value| scaled(*value, low, high)).collect()
+}
