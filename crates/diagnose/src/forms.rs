@@ -6,6 +6,7 @@
 
 use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::Kind;
+use pam_core::effects::static_map::legendre;
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::Guess;
@@ -52,7 +53,32 @@ fn forms_n(setting: &Setting<'_>, state: &State, coordinates: &Coordinates, plac
         forms.push(own_n.iter().zip(&over).map(|(own, over)| own * over).collect());
     }
     forms.push(own_n.iter().zip(&track.instants).map(|(own, instant)| own * instant.moment.direction).collect());
+    let own = guess.effect.page().coordinate;
+    if !matches!(own, Coordinate::Time | Coordinate::Cycle) {
+        let over = over_quantiles(coordinates.of_kind(own), &track.counted);
+        for degree in 1..=LIVES {
+            forms.push(own_n.iter().zip(&over).map(|(own, over)| own * legendre(degree, *over)).collect());
+            forms.push(friction_n(setting, state).zip(&over).map(|(sign, over)| sign * legendre(degree, *over)).collect());
+        }
+    }
     forms
+}
+
+/// Highest degree of what is left in the coordinate that an effect lives in.
+const LIVES: usize = 3;
+
+/// Friction of a unit coefficient with its sign, at every instant.
+fn friction_n<'a>(setting: &'a Setting<'_>, state: &'a State) -> impl Iterator<Item = f64> + 'a {
+    setting.track.instants.iter().zip(&state.sheet.base).map(|(instant, base)| instant.moment.direction * base.normal_n)
+}
+
+/// Ranks of `values` among those that count, from -1 to 1: what is seldom reached is no lever.
+fn over_quantiles(values: &[f64], counted: &[bool]) -> Vec<f64> {
+    let kept = values.iter().zip(counted).filter(|(value, counted)| **counted && value.is_finite());
+    let mut sorted: Vec<f64> = kept.map(|(value, _)| *value).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let n = sorted.len().max(1) as f64;
+    values.iter().map(|value| 2.0 * sorted.partition_point(|other| other < value) as f64 / n - 1.0).collect()
 }
 
 /// Force of `guesses` with the weights of `state`, in N at every instant.

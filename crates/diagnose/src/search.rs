@@ -73,14 +73,15 @@ pub struct Taken {
 
 /// Share of what is left of the mismatch that an effect must explain to be taken.
 const LEAST_SHARE: f64 = 0.1;
-/// Share of the whole mismatch that an effect must explain to be taken, unless it explains half as much as all noise.
-const LEAST_OF_ALL: f64 = 0.03;
+/// Share of the whole mismatch that a further effect must explain to be taken, unless its evidence is strong.
+const LEAST_OF_ALL: f64 = 0.04;
 /// Sum of `ln(without / with)` over held-out blocks that an effect must reach: as if one block were explained and nothing
 /// lost elsewhere.
 const LEAST_LOG_RATIO: f64 = 1.0;
-/// The same beyond which a further effect is taken however small its share of the whole mismatch, if it changes what eq. 11
-/// sees: one that only adds a column takes up a little of whatever is left.
-const STRONG_LOG_RATIO: f64 = 3.0;
+/// The same for a further effect: what is left of those before it is everywhere.
+const FURTHER_LOG_RATIO: f64 = 3.0;
+/// The same beyond which a further effect is taken however small its share of the whole mismatch.
+const STRONG_LOG_RATIO: f64 = 8.0;
 
 /// Searches; calls `looked` behind every look at the catalogue. `setting` has no nuisances yet.
 ///
@@ -124,7 +125,9 @@ pub fn search(
         let formed = forms::with_forms(&mapped, &best.state, &coordinates, &nuisance);
         let beside = mapped.beside(&formed);
         let bent = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
-        let trials = trial::among(&beside, &bent.state, &bent.held_out, &seen, &known, &allowed);
+        // Other forms that only follow the noise are no better than none.
+        let before = if bent.held_out.mean_square() < best.held_out.mean_square() { &bent } else { &best };
+        let trials = trial::among(&beside, &bent.state, &before.held_out, &seen, &known, &allowed);
         looked();
         if looks == 0 {
             first.clone_from(&trials);
@@ -139,7 +142,7 @@ pub fn search(
             eprintln!("look {looks}: {:?} bent {:.4} best {:.4} floor² {:.4}", best.state.guesses, bent.held_out.mean_square(), best.held_out.mean_square(), floor_square);
             for t in trials.iter().take(6) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
         }
-        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, &bent, &whole, floor_square, limits)) else {
+        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, before, &whole, floor_square, limits)) else {
             break;
         };
         let Some(next) = settle(&mapped, &best, &chosen) else { break };
@@ -151,7 +154,7 @@ pub fn search(
     }
     let mut parsimonious = Vec::new();
     while best.state.guesses.len() < limits.max_effects {
-        let Some(next) = static_effect(plain, &mapped, &best, &seen, &allowed, floor_square, limits) else { break };
+        let Some(next) = static_effect(plain, &mapped, &best, &coordinates, &seen, &allowed, floor_square, limits) else { break };
         parsimonious.push(next.state.guesses[next.state.guesses.len() - 1].id());
         best = next;
     }
@@ -196,20 +199,26 @@ fn static_effect(
     plain: &Setting<'_>,
     mapped: &Setting<'_>,
     best: &Judged,
+    coordinates: &Coordinates,
     seen: &Seen,
     allowed: &(dyn Fn(&str) -> bool + Sync),
     floor_square: f64,
     limits: &Limits,
 ) -> Option<Judged> {
-    let bare = judged(plain, plain.fit_near(best.state.guesses.clone(), &best.state)?)?;
-    let map = bare.held_out.mean_square() - best.held_out.mean_square();
+    // What is left of an effect that was named is none of the map's.
+    let [formed, formed_map] =
+        [plain, mapped].map(|setting| forms::with_forms(mapped, &best.state, coordinates, setting.nuisance));
+    let (beside, beside_map) = (plain.beside(&formed), mapped.beside(&formed_map));
+    let bare = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
+    let with_map = judged(&beside_map, beside_map.fit_near(best.state.guesses.clone(), &best.state)?)?;
+    let map = bare.held_out.mean_square() - with_map.held_out.mean_square();
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let matters = limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
     if map < matters {
         return None;
     }
     let statics = |id: &str| allowed(id) && pam_core::effects::effect(id).is_some_and(|effect| effect.is_static());
-    let trials = trial::among(plain, &bare.state, &bare.held_out, seen, &Shapes::new(), &statics);
+    let trials = trial::among(&beside, &bare.state, &bare.held_out, seen, &Shapes::new(), &statics);
     if std::env::var_os("PAM_DEBUG").is_some() {
         eprintln!("static: {:?} bare {:.4} map {:.4}", bare.state.guesses, bare.held_out.mean_square(), best.held_out.mean_square());
         for t in trials.iter().take(6) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
@@ -218,11 +227,7 @@ fn static_effect(
         let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
         gained > OF_THE_MAP * map && trial.log_ratio > LEAST_LOG_RATIO
     })?;
-    let named = settle(plain, &bare, &chosen)?;
-    let gained = bare.held_out.mean_square() - named.held_out.mean_square();
-    if gained < OF_THE_MAP * map {
-        return None;
-    }
+    let named = settle(&beside, &bare, &chosen)?;
     judged(mapped, mapped.fit_near(named.state.guesses.clone(), &named.state)?)
 }
 
@@ -241,16 +246,13 @@ fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits:
     let mismatch = best.held_out.mean_square() - floor_square;
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let whole = base.held_out.mean_square() - floor_square;
-    let further = !best.state.guesses.is_empty() && !trial.guess.only_adds() && trial.log_ratio > STRONG_LOG_RATIO;
-    let matters = match limits.matters_above_n {
-        Some(limit_n) => limit_n * limit_n,
-        None if further => 0.1 * full_floor,
-        None => 0.25 * full_floor,
-    };
+    let further = !best.state.guesses.is_empty();
+    let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
+    let least_log_ratio = if further { FURTHER_LOG_RATIO } else { LEAST_LOG_RATIO };
     gained > LEAST_SHARE * mismatch
         && gained > matters
-        && trial.log_ratio > LEAST_LOG_RATIO
-        && (further || gained > (LEAST_OF_ALL * whole).min(0.5 * full_floor))
+        && trial.log_ratio > least_log_ratio
+        && (!further || gained > LEAST_OF_ALL * whole || trial.log_ratio > STRONG_LOG_RATIO)
 }
 
 /// Probability that an improvement of held-out blocks is chance: a t-test on the log ratios of the blocks that it touches.

@@ -1,5 +1,7 @@
 //! Instants at which the residual of a recording may have jumped.
 
+use pam_core::motion::Instant;
+
 use crate::state::{Setting, State};
 
 /// Instants per recording that are tried for a difference between all before and all after, and as many for a difference
@@ -33,6 +35,39 @@ fn jump_n(setting: &Setting<'_>, residuals_n: &[f64], range: std::ops::Range<usi
     (before.1 >= 5.0 && after.1 >= 5.0).then(|| after.0 / after.1 - before.0 / before.1)
 }
 
+/// Time to either side in which a drive that starts, stops or turns may be what made the force jump, in s.
+const STIR_S: f64 = 0.3;
+/// Share of the largest speed or rate by which a drive that goes on changes, at most.
+const GOES_ON: f64 = 0.1;
+
+/// Where within `range` the drives start, stop or turn nearby.
+fn stirred(setting: &Setting<'_>, range: std::ops::Range<usize>) -> Vec<bool> {
+    let instants = &setting.track.instants[range];
+    let channels: [fn(&Instant) -> f64; 2] =
+        [|instant| instant.moment.speed_m_per_s, |instant| instant.moment.pressure_rate_pa_per_s];
+    let mut stirred = vec![false; instants.len()];
+    for channel in channels {
+        let largest = instants.iter().map(|instant| channel(instant).abs()).fold(0.0, f64::max);
+        let mut first = 0;
+        let mut end = 0;
+        for at in 0..instants.len() {
+            let time_s = instants[at].moment.time_s;
+            while instants[first].moment.time_s < time_s - STIR_S {
+                first += 1;
+            }
+            while end < instants.len() && instants[end].moment.time_s <= time_s + STIR_S {
+                end += 1;
+            }
+            let (low, high) = instants[first..end]
+                .iter()
+                .map(channel)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), rate| (low.min(rate), high.max(rate)));
+            stirred[at] |= high - low > GOES_ON * largest;
+        }
+    }
+    stirred
+}
+
 /// Shapes (recording, instant in s) of the most likely steps: where the two sides of a cut differ most in their mean.
 pub(crate) fn shapes(setting: &Setting<'_>, state: &State) -> Vec<Vec<f64>> {
     let residuals = setting.residuals_n(state);
@@ -43,6 +78,7 @@ pub(crate) fn shapes(setting: &Setting<'_>, state: &State) -> Vec<Vec<f64>> {
         if n < 40 {
             continue;
         }
+        let stirred = stirred(setting, range.clone());
         let total: f64 = counted.iter().map(|&at| residuals[at]).sum();
         let mut gains = Vec::with_capacity(n);
         let mut sum = 0.0;
@@ -65,6 +101,9 @@ pub(crate) fn shapes(setting: &Setting<'_>, state: &State) -> Vec<Vec<f64>> {
             let mut taken: Vec<usize> = Vec::new();
             ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             for (gain, position) in ranked {
+                if stirred[counted[position] - range.start] {
+                    continue;
+                }
                 if taken.len() == PER_RECORDING || gain <= 0.0 {
                     break;
                 }

@@ -32,7 +32,7 @@ impl Effect for PreslidingHysteresis {
             Shape {
                 name: "slip_distance_m",
                 unit: "m",
-                range: (5e-5, 2e-2),
+                range: (2e-4, 2e-2),
                 grid: &[2e-4, 5e-4, 1e-3, 2e-3, 4e-3, 8e-3],
             },
             Shape { name: "slide_at_rest", unit: "1", range: (0.0, 20.0), grid: &[0.0, 1.0] },
