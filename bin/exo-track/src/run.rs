@@ -7,7 +7,7 @@ use pam_cli::{Console, Output, Verdict, pretty_json, publish, write_example};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool, sha256_hex};
 use pam_core::effects::AugmentedModel;
 use pam_core::muscle::Muscle;
-use pam_exo::artifact::{ArmMetrics, MetricsArtifact, SCHEMA, TrialMetrics, paper};
+use pam_exo::artifact::{ArmMetrics, MetricsArtifact, SCHEMA, TrialMetrics, is_the_papers, paper};
 use pam_exo::config::{LiftConfig, LiftPlan};
 use pam_exo::inverse::{ExactInverse, Inverse};
 use pam_exo::lift::{Instant, Outcome};
@@ -83,7 +83,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         );
     }
     let [left, right] = outcomes.map(|outcome| ArmMetrics::of(&outcome));
-    console.text(tables::errors(&left.errors, &right.errors, &paper()));
+    let beside = is_the_papers(&plan).then(paper);
+    console.text(tables::errors(&left.errors, &right.errors, beside.as_ref()));
     if args.compare_options {
         let progress = console.progress("comparing options", 1);
         let variants = compare_options(&simulation, args.run.seed, |done, all| progress.set_of(done, all));
@@ -148,6 +149,7 @@ impl Outputs {
         plan: &LiftPlan,
         study: Option<&Study>,
     ) -> anyhow::Result<()> {
+        let beside = is_the_papers(plan).then(paper);
         let mut outputs = Vec::new();
         if let Some(output) = self.track {
             outputs.push((output, track::csv(arms)?));
@@ -156,10 +158,10 @@ impl Outputs {
             outputs.push((output, pretty_json(artifact)?));
         }
         if let Some(output) = self.figure {
-            outputs.push((output, figure::lift(arms, artifact)?.into_bytes()));
+            outputs.push((output, figure::lift(arms, artifact, beside.as_ref())?.into_bytes()));
         }
         if let (Some(output), Some(study), Some(trials)) = (self.trials_figure, study, &artifact.trials) {
-            outputs.push((output, figure::envelope(study, trials, plan)?.into_bytes()));
+            outputs.push((output, figure::envelope(study, trials, plan, beside.as_ref())?.into_bytes()));
         }
         Ok(publish(outputs, console)?)
     }
