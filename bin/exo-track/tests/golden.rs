@@ -55,7 +55,7 @@ fn golden_table_2() {
     assert_eq!(rows, 6);
 }
 
-/// On the paper's own plant, all twelve figures of Table 2 are beaten, the smallest margin being a factor of five.
+/// On the paper's own plant, all twelve figures of Table 2 are beaten ten times over.
 #[test]
 fn the_lift_as_published_beats_all_twelve_figures_of_table_2() {
     let metrics = metrics_of(AS_PUBLISHED, "1");
@@ -81,7 +81,7 @@ fn the_lift_as_published_beats_all_twelve_figures_of_table_2() {
             // The paper prints the plain sum as ITAE; its integral follows from it, and both are compared.
             for figure in ["max", "mae", "rmse", "itae", "itae_sum"] {
                 let [ours, theirs] = [&metrics[arm]["errors"], paper].map(|of| of[signal][figure].as_f64().unwrap());
-                assert!(5.0 * ours < theirs, "{arm} {signal} {figure}: {ours} against {theirs}");
+                assert!(10.0 * ours < theirs, "{arm} {signal} {figure}: {ours} against {theirs}");
                 beaten += usize::from(figure != "itae_sum");
             }
         }
