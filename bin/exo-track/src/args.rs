@@ -46,7 +46,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "METRICS.json")]
     pub(crate) metrics: Option<PathBuf>,
 
-    /// Figure to write (SVG): reference, load, muscles, control and tracking, as in Figs 9 and 12 to 15.
+    /// Figure to write (SVG): angle and its errors, acceleration, pressure and tension, as in Figs 12, 14 and 15.
     #[arg(long, value_name = "LIFT.svg")]
     pub(crate) figure: Option<PathBuf>,
 

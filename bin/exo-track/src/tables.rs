@@ -8,8 +8,8 @@ use pam_report::Table;
 /// One signal of the errors of an arm.
 type Pick = fn(&TrackingErrors) -> SignalErrors;
 
-/// The paper's Table 2 with ours beside it.
-pub(crate) fn errors(left: &TrackingErrors, right: &TrackingErrors, paper: &TrackingErrors) -> String {
+/// Errors of a lift, beside the paper's Table 2 where it is the paper's lift.
+pub(crate) fn errors(left: &TrackingErrors, right: &TrackingErrors, paper: Option<&TrackingErrors>) -> String {
     let mut table = Table::new(["", "", "MAX", "MAE", "RMSE", "ITAE", "Σ t |e|"]);
     let signals: [(&str, Pick); 3] = [
         ("angle (rad)", |errors| errors.angle_rad),
@@ -18,7 +18,8 @@ pub(crate) fn errors(left: &TrackingErrors, right: &TrackingErrors, paper: &Trac
     ];
     for (name, signal) in signals {
         let mut name = name;
-        for (arm, errors) in [("left", left), ("right", right), ("paper", paper)] {
+        for (arm, errors) in [("left", Some(left)), ("right", Some(right)), ("paper", paper)] {
+            let Some(errors) = errors else { continue };
             let of = signal(errors);
             let digits = [of.max, of.mae, of.rmse, of.itae].map(|value| format!("{value:.5}"));
             let [max, mae, rmse, itae] = digits;
@@ -26,11 +27,13 @@ pub(crate) fn errors(left: &TrackingErrors, right: &TrackingErrors, paper: &Trac
             name = "";
         }
     }
-    format!(
+    let heading = if paper.is_some() {
         "Errors of the lift beside the paper's Table 2 (ITAE is the integral of t |e| dt, times s² to the signal's unit; \
-         the paper prints the plain sum of t |e| over its samples as ITAE, which is 1/dt = 100 times as much)\n{}",
-        table.to_terminal()
-    )
+         the paper prints the plain sum of t |e| over its samples as ITAE, which is 1/dt = 100 times as much)"
+    } else {
+        "Errors of the lift (ITAE is the integral of t |e| dt, times s² to the signal's unit)"
+    };
+    format!("{heading}\n{}", table.to_terminal())
 }
 
 /// Quantiles of a study.

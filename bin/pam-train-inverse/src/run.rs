@@ -41,6 +41,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
             prepared.n_rows_excluded()
         ));
     }
+    warn_of_another_muscle(&console, &model, &prepared);
     if args.run.check {
         console.note(format!("inputs are fine: {} points to train at (--check)", prepared.points().len()));
         return Ok(Verdict::Accepted);
@@ -71,6 +72,23 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         return Ok(Verdict::Rejected);
     }
     Ok(Verdict::Accepted)
+}
+
+/// Error of a model on a recording of its own muscle, as a share of its range of force and as a multiple of its error on
+/// the recordings that it was identified on: a muscle that is beyond both is another one, or the model is none of it.
+const OTHER_MUSCLE: (f64, f64) = (0.05, 4.0);
+
+/// Says where recorded forces are not those of the model; the network is trained on the model's all the same.
+fn warn_of_another_muscle(console: &Console, model: &ModelArtifact, prepared: &Prepared) {
+    let Some(error_n) = prepared.force_rmse_n() else { return };
+    let [lowest_n, highest_n] = model.domain.force_n;
+    let fitted_n = model.fit.estimation.rmse_n;
+    if error_n > OTHER_MUSCLE.0 * (highest_n - lowest_n) && error_n > OTHER_MUSCLE.1 * fitted_n {
+        console.warn(format!(
+            "the recorded forces are {error_n:.1} N from the model's, which left {fitted_n:.1} N where it was identified: \
+             are these recordings of its muscle? Their forces are not used"
+        ));
+    }
 }
 
 fn check_numbers(args: &Args) -> anyhow::Result<()> {

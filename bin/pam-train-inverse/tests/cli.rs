@@ -181,6 +181,33 @@ fn recordings_may_be_trained_at_and_rows_outside_are_counted() {
 }
 
 #[test]
+fn recordings_of_another_muscle_are_refused_or_doubted() {
+    let folder = folder_with(&model_json(Change::None));
+    let log = |length_mm: f64, force_n: f64| {
+        let row = |row: u32| {
+            let phase = f64::from(row) * 0.0628;
+            let (pressure_kpa, length_mm) = (250.0 + 150.0 * phase.sin(), length_mm + 10.0 * (0.7 * phase).sin());
+            format!("{:.2},{pressure_kpa:.3},{length_mm:.3},{:.3}\n", f64::from(row) * 0.01, force_n + phase.sin())
+        };
+        let rows: String = (0..1000).map(row).collect();
+        std::fs::write(folder.path().join("log.csv"), format!("time_s,pressure_kPa,length_mm,force_N\n{rows}"))
+            .unwrap();
+    };
+    // A muscle that is half as long.
+    log(130.0, 300.0);
+    insta::assert_snapshot!(refused(folder.path(), &train(folder.path(), &["log.csv"])), @"error: model.json: none of the 1000 rows that were taken from the recordings lies where the model can be inverted; name recordings of its muscle, or none");
+    // One of this length, with forces that this one never has there.
+    log(240.0, 900.0);
+    let text = String::from_utf8(train(folder.path(), &["log.csv"]).stderr).unwrap();
+    assert!(
+        text.contains(
+            " N from the model's, which left 1.0 N where it was identified: are these recordings of its muscle?"
+        ),
+        "{text}"
+    );
+}
+
+#[test]
 fn a_network_that_saw_one_corner_is_judged_on_the_whole_domain() {
     let folder = folder_with(&model_json(Change::None));
     let row = |row: u32| {
@@ -213,6 +240,7 @@ fn a_model_without_a_usable_domain_is_refused() {
     insta::assert_snapshot!(refused_model(Change::NaN), @"error: model.json:28:7: expected value; expected a pam-model/1 artifact");
     insta::assert_snapshot!(refused_model(Change::Backwards), @"error: model.json: the model's domain covers pressure 500 to 0.5 kPa only; identify it from recordings in which the pressure varies");
     insta::assert_snapshot!(refused_model(Change::NeverRising), @"error: model.json: the model can be inverted in 0.0 % of its domain only (0.0 % slack, 100.0 % where force does not grow with pressure); check the model");
+    insta::assert_snapshot!(refused_model(Change::Driving), @"error: model.json: rubber_friction is -1.2e-3, a friction that drives; identify the model anew");
     insta::assert_snapshot!(refused_model(Change::OtherSchema), @r#"error: model.json: schema is "pam-diagnosis/1", expected "pam-model/1"; write it with pam-identify"#);
 }
 

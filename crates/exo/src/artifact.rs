@@ -4,7 +4,7 @@ use pam_core::artifact::{Input, Tool};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::config::LiftConfig;
+use crate::config::{LiftConfig, LiftPlan};
 use crate::lift::Outcome;
 use crate::metrics::{SignalErrors, TrackingErrors};
 use crate::study::{Study, quantile};
@@ -130,4 +130,19 @@ pub fn paper() -> TrackingErrors {
         velocity_rad_per_s: row(0.0031, 0.0012, 0.0013, 1.4645),
         acceleration_rad_per_s2: row(0.0049, 0.0018, 0.0021, 2.2687),
     }
+}
+
+/// Whether a lift is the paper's: its reference, its load and its arm, so that its errors can stand beside Table 2.
+pub fn is_the_papers(plan: &LiftPlan) -> bool {
+    let lift = [
+        plan.reference.from_rad,
+        plan.reference.to_rad,
+        plan.reference.duration_s,
+        plan.upper_m,
+        plan.lower_m,
+        plan.load.mass_kg,
+        plan.load.inertia_kg_m2,
+    ];
+    let papers = [0.0, 0.3, 5.0, 0.165, 0.21, 5.0, 0.05];
+    lift.iter().zip(papers).all(|(value, papers)| (value - papers).abs() < 1e-9)
 }

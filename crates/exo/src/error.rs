@@ -94,13 +94,68 @@ pub enum ConfigError {
     },
 }
 
-/// Why the reference is out of the muscle's reach.
+/// Why a lift cannot happen, and what would help.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum ReachError {
+#[error("the muscle cannot reach the reference: {what}{}; {help}", beyond(*recorded_mm))]
+pub struct ReachError {
+    /// Where it fails, and by how much.
+    pub what: OutOfReach,
+    /// Lengths that the model was identified on, in mm, where it fails beyond them.
+    pub recorded_mm: Option<[f64; 2]>,
+    /// What would help.
+    pub help: Help,
+}
+
+fn beyond(recorded_mm: Option<[f64; 2]>) -> String {
+    recorded_mm.map_or(String::new(), |[from, to]| {
+        format!(" (extrapolated: the model was identified on {from:.1} to {to:.1} mm)")
+    })
+}
+
+/// What would bring a lift into reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Help {
+    /// Another mounted length, with which the lift was tried.
+    MountedLength {
+        /// That length, in mm.
+        length_mm: f64,
+    },
+    /// A lighter load, with which the lift was tried.
+    Mass {
+        /// Its mass, in kg.
+        mass_kg: f64,
+    },
+    /// A smaller rise, with which the lift was tried.
+    Rise {
+        /// Angle at its end, in rad.
+        to_rad: f64,
+    },
+    /// None of these.
+    Other,
+}
+
+impl std::fmt::Display for Help {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::MountedLength { length_mm } => write!(formatter, "arm.mounted_length_mm = {length_mm:.1} fits"),
+            Self::Mass { mass_kg } => write!(formatter, "no mounted length helps; load.mass_kg = {mass_kg:.1} fits"),
+            Self::Rise { to_rad } => {
+                write!(formatter, "no mounted length and no lighter load helps; reference.to_rad = {to_rad:.2} fits")
+            }
+            Self::Other => formatter.write_str(
+                "no mounted length, no lighter load and no smaller rise helps; change reference.from_rad, \
+                 valve.lowest_kpa or valve.highest_kpa, lower the gains of [controller], or identify the model anew",
+            ),
+        }
+    }
+}
+
+/// Where a lift is out of a muscle's reach.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum OutOfReach {
     /// The muscle is stretched beyond the length of its strands.
     #[error(
-        "the muscle cannot reach the reference: at {q_rad:.3} rad ({time_s:.2} s) it is {length_mm:.1} mm long, and its \
-         strands are straight at {straight_mm:.1} mm; mount it shorter (arm.mounted_length_mm)"
+        "at {q_rad:.3} rad ({time_s:.2} s) it is {length_mm:.1} mm long, and its strands are straight at {straight_mm:.1} mm"
     )]
     Overstretched {
         /// Angle, in rad.
@@ -114,9 +169,8 @@ pub enum ReachError {
     },
     /// The muscle has shortened so far that no pressure makes it pull.
     #[error(
-        "the muscle cannot reach the reference: at {q_rad:.3} rad ({time_s:.2} s) it is slack, as a muscle of \
-         {length_mm:.1} mm pulls nothing even at {highest_kpa:.0} kPa, and the lift needs {needed_n:.1} N; mount it \
-         longer (arm.mounted_length_mm)"
+        "at {q_rad:.3} rad ({time_s:.2} s) it is slack, as a muscle of {length_mm:.1} mm pulls nothing even at \
+         {highest_kpa:.0} kPa, and the lift needs {needed_n:.1} N"
     )]
     Slack {
         /// Angle, in rad.
@@ -132,9 +186,8 @@ pub enum ReachError {
     },
     /// The muscle is too weak.
     #[error(
-        "the muscle cannot reach the reference: at {q_rad:.3} rad ({time_s:.2} s, length {length_mm:.1} mm) the lift \
-         needs {needed_n:.1} N, and {highest_kpa:.0} kPa give {available_n:.1} N; lower load.mass_kg or \
-         reference.to_rad, or raise valve.highest_kpa"
+        "at {q_rad:.3} rad ({time_s:.2} s, length {length_mm:.1} mm) the lift needs {needed_n:.1} N, and \
+         {highest_kpa:.0} kPa give {available_n:.1} N"
     )]
     TooWeak {
         /// Angle, in rad.
@@ -152,9 +205,8 @@ pub enum ReachError {
     },
     /// The muscle pulls more than is needed even at the lowest pressure.
     #[error(
-        "the muscle cannot reach the reference: at {q_rad:.3} rad ({time_s:.2} s, length {length_mm:.1} mm) the lift \
-         needs {needed_n:.1} N, and the muscle pulls {available_n:.1} N already at {lowest_kpa:.0} kPa; mount it \
-         longer (arm.mounted_length_mm) or start at a larger angle"
+        "at {q_rad:.3} rad ({time_s:.2} s, length {length_mm:.1} mm) the lift needs {needed_n:.1} N, and the muscle pulls \
+         {available_n:.1} N already at {lowest_kpa:.0} kPa"
     )]
     TooStrong {
         /// Angle, in rad.
@@ -169,5 +221,35 @@ pub enum ReachError {
         available_n: f64,
         /// Lowest pressure, in kPa.
         lowest_kpa: f64,
+    },
+    /// Before the load is on the arms, the muscle lifts them by itself.
+    #[error(
+        "before the load is on the arms, a muscle of {length_mm:.1} mm pulls {available_n:.1} N at {lowest_kpa:.0} kPa and \
+         lifts the bare arm by more than half of limits.diverged_rad"
+    )]
+    Restless {
+        /// Length of the muscle at the start, in mm.
+        length_mm: f64,
+        /// Force at the lowest pressure there, in N.
+        available_n: f64,
+        /// Lowest pressure, in kPa.
+        lowest_kpa: f64,
+    },
+    /// The model gives no force that a muscle can have.
+    #[error(
+        "at {q_rad:.3} rad ({time_s:.2} s, length {length_mm:.1} mm) the model gives no force that a muscle has, between \
+         {lowest_kpa:.0} and {highest_kpa:.0} kPa"
+    )]
+    NoForce {
+        /// Angle, in rad.
+        q_rad: f64,
+        /// Time from the start of the lift, in s.
+        time_s: f64,
+        /// Length of the muscle there, in mm.
+        length_mm: f64,
+        /// Lowest pressure, in kPa.
+        lowest_kpa: f64,
+        /// Highest pressure, in kPa.
+        highest_kpa: f64,
     },
 }

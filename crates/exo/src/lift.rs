@@ -83,8 +83,12 @@ pub struct Instant {
 /// How a lift went.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
-    /// Errors, once every period of the controller, against the true state.
+    /// Errors, once every period of the controller from the start of the lift on, against the true state; all 0 where it
+    /// was given up before.
     pub errors: TrackingErrors,
+    /// Whether there was a lift at all: it is given up before its start where the arm does not stay at the angle that the
+    /// lift starts from.
+    pub began: bool,
     /// The first trouble of each kind: slack, saturated, diverged.
     pub troubles: [Option<Trouble>; 3],
     /// Whether the inverse was asked outside what it knows.
@@ -98,6 +102,16 @@ impl Outcome {
     pub fn is_clean(&self) -> bool {
         self.troubles.iter().all(Option::is_none)
     }
+}
+
+/// What no arm does, in any unit that an instant has: beyond it a simulation has run away and sums of squares overflow.
+const BEYOND_ALL: f64 = 1e100;
+
+/// Whether the arm and the command for it still are numbers that mean something.
+fn is_sane(plant: &ArmPlant<'_>, measured_pa: f64, command: &Command) -> bool {
+    let state = [plant.q_rad, plant.dq_rad_per_s, plant.ddq_rad_per_s2, plant.pressure_pa, plant.pull.tension_n];
+    let seen = [measured_pa, command.torque_n_m, command.force_n, command.desired_pa, command.pressure_pa];
+    state.iter().chain(&seen).all(|value| value.abs() < BEYOND_ALL)
 }
 
 impl Lift<'_> {
@@ -133,7 +147,8 @@ impl Lift<'_> {
         let mut controller = Controller::new(self.settings, self.knowledge, &self.reference, angle_rad, start_pa);
         let mut sums = ErrorSums::default();
         let mut troubles = TroubleWatch::default();
-        let mut outside = false;
+        let mut told_pa = start_pa;
+        let (mut outside, mut began) = (false, false);
         for period in -self.periods_before()..=self.periods_after() {
             let time_s = period as f64 * period_s;
             let measured_rad = self.angle_sensor.read(plant.q_rad, rng);
@@ -146,9 +161,10 @@ impl Lift<'_> {
             let command = controller.update(time_s, [carried, ahead], measured_rad, measured_pa);
             let reference = self.reference.at(time_s);
             let error_rad = reference.q_rad - plant.q_rad;
-            // Written so that an error that is no number ends the lift, too.
-            let given_up = error_rad.is_nan() || error_rad.abs() > self.diverged_rad;
-            if period >= 0 || given_up {
+            let sane = is_sane(&plant, measured_pa, &command);
+            let given_up = !sane || error_rad.abs() > self.diverged_rad;
+            if period >= 0 && sane {
+                began = true;
                 let instant = self.instant(time_s, reference, &plant, [measured_rad, measured_pa], command);
                 sums.add(time_s, &instant.reference, &instant.state);
                 outside |= command.outside;
@@ -156,11 +172,13 @@ impl Lift<'_> {
                 watch(&instant);
             }
             if given_up {
-                troubles.give_up(time_s, error_rad);
+                troubles.give_up(time_s, if sane { error_rad } else { f64::INFINITY });
                 break;
             }
-            for _ in 0..steps {
-                plant.advance(line.pass(command.pressure_pa), carried);
+            let from_pa = std::mem::replace(&mut told_pa, command.pressure_pa);
+            for step in 1..=steps {
+                let share = if self.settings.ramp { step as f64 / steps as f64 } else { 1.0 };
+                plant.advance(line.pass(told_pa - (1.0 - share) * (told_pa - from_pa)), carried);
                 if plant.pull.slack && period >= 0 {
                     troubles.slacken(time_s, plant.q_rad);
                 }
@@ -168,6 +186,7 @@ impl Lift<'_> {
         }
         Outcome {
             errors: sums.finish(period_s),
+            began,
             troubles: troubles.found(),
             outside,
             payload_kg: controller.payload_kg(),

@@ -121,6 +121,7 @@ fn variants(simulation: &Simulation<'_>) -> Vec<(String, LiftPlan)> {
     without("integral action", ControlSettings { integral_per_s3: 0.0, ..full });
     without("disturbance observer", ControlSettings { disturbance_observer: false, ..full });
     without("lag compensation", ControlSettings { lag_compensation: false, ..full });
+    without("ramp", ControlSettings { ramp: false, ..full });
     without("hysteresis-aware inverse", ControlSettings { hysteresis_aware: false, ..full });
     if !simulation.model.is_plain() {
         without("memory of effects", ControlSettings { effect_memory: false, ..full });
@@ -145,8 +146,13 @@ fn errors(simulation: &Simulation<'_>, plan: &LiftPlan, case: &Case, seed: u64) 
         for offset in 0..SEEDS {
             let mut rng = stream(seed.wrapping_add(offset), 0);
             for outcome in varied.run(deviation, &case.force, &mut rng, |_, _| {}) {
-                max_rad = max_rad.max(outcome.errors.angle_rad.max);
-                squares += outcome.errors.angle_rad.rmse.powi(2);
+                let [max, rmse] = if outcome.began {
+                    [outcome.errors.angle_rad.max, outcome.errors.angle_rad.rmse]
+                } else {
+                    [plan.diverged_rad; 2]
+                };
+                max_rad = max_rad.max(max);
+                squares += rmse.powi(2);
                 count += 1.0;
                 troubled |= !outcome.is_clean();
             }

@@ -29,10 +29,12 @@ pub struct Trial {
 }
 
 impl Trial {
-    fn of(outcomes: &[Outcome; 2]) -> Self {
+    /// A lift that was given up before its start counts with `diverged_rad`, the error at which it was given up.
+    fn of(outcomes: &[Outcome; 2], diverged_rad: f64) -> Self {
         let worse = |value: fn(&Outcome) -> f64| {
-            let [left, right] = [value(&outcomes[0]), value(&outcomes[1])];
-            if left.is_nan() || left > right { left } else { right }
+            let [left, right] =
+                [0, 1].map(|arm| if outcomes[arm].began { value(&outcomes[arm]) } else { diverged_rad });
+            left.max(right)
         };
         Self {
             max_rad: worse(|outcome| outcome.errors.angle_rad.max),
@@ -167,7 +169,7 @@ fn one_trial(
         envelope.add(period[arm], instant.reference.q_rad - instant.state.q_rad);
         period[arm] += 1;
     });
-    Trial::of(&outcomes)
+    Trial::of(&outcomes, simulation.plan.diverged_rad)
 }
 
 fn draw(plan: &LiftPlan, rng: &mut Pcg64) -> Deviation {

@@ -29,12 +29,20 @@ pub enum Trouble {
         /// Force that was wanted, in N.
         force_n: f64,
     },
-    /// The error grew beyond the limit, or became no number.
-    #[error("given up at {time_s:.2} s: the angle is off by {error_rad:.4} rad, more than limits.diverged_rad")]
+    /// The error grew beyond the limit, or beyond all limits.
+    #[error(
+        "given up at {time_s:.2} s{}: {}",
+        if *time_s < 0.0 { ", before the lift" } else { "" },
+        if error_rad.is_finite() {
+            format!("the angle is off by {error_rad:.4} rad, more than limits.diverged_rad")
+        } else {
+            "the simulation ran away, as no muscle and no controller of these values can be held".to_owned()
+        }
+    )]
     Diverged {
         /// When, in s.
         time_s: f64,
-        /// Error, in rad.
+        /// Error, in rad; infinite where the simulation ran away.
         error_rad: f64,
     },
 }

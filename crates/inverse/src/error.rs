@@ -19,6 +19,14 @@ pub enum InverseError {
         /// Unit of the ends.
         unit: &'static str,
     },
+    /// Friction that drives: it would add force instead of taking it.
+    #[error("{name} is {value:e}, a friction that drives; identify the model anew")]
+    Drives {
+        /// Parameter.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
     /// Hardly any point of the domain has an inverse.
     #[error(
         "the model can be inverted in {percent:.1} % of its domain only ({slack:.1} % slack, {flat:.1} % where force does not grow with pressure); check the model"
@@ -30,6 +38,15 @@ pub enum InverseError {
         slack: f64,
         /// Share without slope, in percent.
         flat: f64,
+    },
+    /// Recordings that have nothing to do with the model.
+    #[error(
+        "none of the {n_rows} rows that were taken from the recordings lies where the model can be inverted; name recordings \
+         of its muscle, or none"
+    )]
+    NothingRecorded {
+        /// Rows that were taken.
+        n_rows: usize,
     },
     /// Fewer points than weights.
     #[error(

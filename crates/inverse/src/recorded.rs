@@ -15,12 +15,14 @@ pub struct Recorded {
     pub points: Vec<Point>,
     /// Rows that were looked at and left out: outside the domain, or without an inverse.
     pub n_excluded: usize,
+    /// Recorded forces less the model's at the rows that were taken, root mean square in N; none without recorded forces.
+    pub force_rmse_n: Option<f64>,
 }
 
 /// At most about `n` rows of `recordings`, evenly spaced.
 ///
 /// # Errors
-/// [`InverseError::Samples`] where samples cannot be read back.
+/// [`InverseError::Samples`] where samples cannot be read back, [`InverseError::NothingRecorded`] where no row is a point.
 pub fn points(
     recordings: &[Recording],
     artifact: &ModelArtifact,
@@ -35,12 +37,22 @@ pub fn points(
     };
     let failed = |reason| InverseError::Samples { reason };
     let mut recorded = Recorded::default();
+    let (mut squares, mut n_forces) = (0.0, 0.0);
     for recording in recordings {
         let directions = Direction::of(recording, artifact.direction, driver).map_err(failed)?;
         for chunk in recording.samples.chunks() {
             let chunk = chunk.map_err(failed)?;
             let columns = chunk.rows().zip(chunk.pressure_pa()).zip(chunk.length_m());
             for ((row, &pressure_pa), &length_m) in columns.filter(|((row, _), _)| row % every == 0) {
+                if recording.samples.has_force() {
+                    let settled_n = inverse.model().settled_force_n(pressure_pa, length_m, directions.sign(row));
+                    let error_n = chunk.force_n()[row - chunk.rows().start] - settled_n;
+                    // Beyond its strands' length a muscle has no force to compare.
+                    if error_n.is_finite() {
+                        squares += error_n * error_n;
+                        n_forces += 1.0;
+                    }
+                }
                 match point(inverse, pressure_pa, length_m, directions.sign(row)) {
                     Some(point) => recorded.points.push(point),
                     None => recorded.n_excluded += 1,
@@ -48,6 +60,10 @@ pub fn points(
             }
         }
     }
+    if recorded.points.is_empty() && recorded.n_excluded > 0 {
+        return Err(InverseError::NothingRecorded { n_rows: recorded.n_excluded });
+    }
+    recorded.force_rmse_n = (n_forces > 0.0).then(|| (squares / n_forces).sqrt());
     Ok(recorded)
 }
 

@@ -8,7 +8,7 @@ use crate::coverage::coverage;
 use crate::design::{self, Draw, Point};
 use crate::domain::InverseBox;
 use crate::judge::{Judged, judge, report};
-use crate::recorded;
+use crate::recorded::{self, Recorded};
 use crate::samples::{Samples, Scaling, part};
 use crate::train::{Trained, train};
 use crate::{ExactInverse, InverseError, InverseNetwork};
@@ -22,6 +22,7 @@ pub struct Prepared {
     exact: ExactInverse,
     points: Vec<Point>,
     n_rows_excluded: usize,
+    force_rmse_n: Option<f64>,
 }
 
 /// A trained network, ready to be used and to be written.
@@ -46,6 +47,10 @@ impl Prepared {
         config: &TrainConfig,
         seed: u64,
     ) -> Result<Self, InverseError> {
+        let frictions = model.parameters.iter().filter(|entry| entry.name.ends_with("_friction"));
+        if let Some(entry) = frictions.into_iter().find(|entry| entry.value < 0.0) {
+            return Err(InverseError::Drives { name: entry.name.clone(), value: entry.value });
+        }
         let inverse_box = InverseBox::of(&model.domain)?;
         let exact = ExactInverse::new(model.augmented_model(), inverse_box, config.min_slope_share);
         let shares = coverage(&exact);
@@ -58,8 +63,9 @@ impl Prepared {
         }
         let mut points = design::points(&exact, config.n_design_points, Draw::Design, seed);
         let recorded = recorded::points(recordings, model, &exact, config.n_recording_rows)?;
-        points.extend(recorded.points);
-        Ok(Self { exact, points, n_rows_excluded: recorded.n_excluded })
+        points.extend(&recorded.points);
+        let Recorded { n_excluded: n_rows_excluded, force_rmse_n, .. } = recorded;
+        Ok(Self { exact, points, n_rows_excluded, force_rmse_n })
     }
 
     /// The exact inverse that points and errors come from.
@@ -75,6 +81,11 @@ impl Prepared {
     /// Rows of the recordings that were left out.
     pub fn n_rows_excluded(&self) -> usize {
         self.n_rows_excluded
+    }
+
+    /// Recorded forces less the model's, root mean square in N; none without recorded forces.
+    pub fn force_rmse_n(&self) -> Option<f64> {
+        self.force_rmse_n
     }
 
     /// Trains and judges; `tick` is called after every epoch of every start, from any thread.

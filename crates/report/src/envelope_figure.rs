@@ -19,8 +19,8 @@ pub struct EnvelopeFigure {
     pub envelope: Vec<(f64, [f64; 7])>,
     /// MAX, MAE and RMSE of every trial, in rad.
     pub errors_rad: [Vec<f64>; 3],
-    /// What the paper states for them, in rad.
-    pub paper_rad: [f64; 3],
+    /// What the paper states for them, in rad; where the lift is the paper's.
+    pub paper_rad: Option<[f64; 3]>,
 }
 
 /// Names and colors of the three errors.
@@ -78,24 +78,24 @@ fn draw_distribution(canvas: &mut Canvas<'_>, cell: Rect, figure: &EnvelopeFigur
         errors
     });
     let ends = || sorted.iter().flat_map(|errors| errors.first().into_iter().chain(errors.last()));
-    let lowest = ends().chain(&figure.paper_rad).copied().fold(f64::MAX, f64::min);
-    let highest = ends().chain(&figure.paper_rad).copied().fold(f64::MIN, f64::max);
+    let lowest = ends().chain(figure.paper_rad.iter().flatten()).copied().fold(f64::MAX, f64::min);
+    let highest = ends().chain(figure.paper_rad.iter().flatten()).copied().fold(f64::MIN, f64::max);
     let x = Axis::logarithmic("error of a lift (mrad)", 0.9e3 * lowest, 1.1e3 * highest);
     let panel = Panel::new(cell, x, Axis::exact("share of the trials (%)", 0.0, 100.0, 5), 20.0);
     panel.draw_frame(canvas);
     panel.level(canvas, 95.0, palette::SILVER, 1.2);
     let (left, height) = panel.at(panel.x.from, 95.0);
     canvas.text("95 %", (left + 6.0, height + 9.0), Anchor::Start, 11.0, palette::GRAY);
-    for (((errors, paper), total), (name, color)) in
-        sorted.iter().zip(figure.paper_rad).zip(figure.errors_rad.iter().map(Vec::len)).zip(ERRORS)
-    {
+    for (index, (errors, (name, color))) in sorted.iter().zip(ERRORS).enumerate() {
+        let total = figure.errors_rad[index].len();
         // As many points as there are pixels, however many trials.
-        let points = (0..=600).filter_map(|index| {
-            let row = (index * errors.len().checked_sub(1)?) / 600;
+        let points = (0..=600).filter_map(|point| {
+            let row = (point * errors.len().checked_sub(1)?) / 600;
             Some((1e3 * errors[row], 100.0 * (row + 1) as f64 / total as f64))
         });
         panel.line(canvas, points, color, 2.0);
-        let (x, _) = panel.at(1e3 * paper, 0.0);
+        let Some(paper_rad) = figure.paper_rad else { continue };
+        let (x, _) = panel.at(1e3 * paper_rad[index], 0.0);
         canvas.dashes((x, panel.frame.top), (x, panel.frame.bottom), color.faded(0.8), 1.2, 4.0);
         let at = (x - 8.0, panel.frame.bottom - 14.0);
         canvas.upward(&format!("paper's {name}"), at, Anchor::Start, 11.0, color.toward(palette::INK, 0.3));

@@ -82,3 +82,36 @@ fn nothing_to_invert_is_an_error() {
     let figure = InverseFigure { maps: [map(nowhere), map(nowhere)], ..figure() };
     assert_eq!(inverse_figure(&figure), Err(FigureError::NothingToInvert));
 }
+
+#[test]
+fn a_figure_of_full_size_is_no_half_megabyte() {
+    let fine = |extent: f64| {
+        let cells = (0..36).flat_map(|row| (0..56).map(move |column| (row, column)));
+        let cell = |(row, column): (usize, usize)| {
+            if row * 2 > column + 20 {
+                return InverseCell::OutOfReach;
+            }
+            let exact_kpa = 12.0 * row as f64 + 2.0 * column as f64;
+            let wave = (0.3 * row as f64).sin() * (0.25 * column as f64 + extent).cos();
+            InverseCell::Found { network_kpa: exact_kpa + 0.1 * wave, exact_kpa }
+        };
+        InverseMap { n_columns: 56, cells: cells.map(cell).collect(), ..map(half) }
+    };
+    let cells = (0..40).flat_map(|row| {
+        (0..56).map(move |column| SlopeCell::Rising(0.04 * f64::from(column) + 0.002 * f64::from(row)))
+    });
+    let slopes = SlopeMap { n_columns: 56, cells: cells.collect(), ..figure().slopes };
+    let errors: Vec<f64> = (0..2000).map(|index| 0.001 * f64::from(index).sin()).collect();
+    let curve: Vec<f64> = (0..200).map(|epoch| 100.0 / f64::from(epoch + 1)).collect();
+    let figure = InverseFigure {
+        maps: [fine(0.0), fine(1.0)],
+        slopes,
+        errors_kpa: [errors.clone(), errors],
+        training_rmse_kpa: curve.clone(),
+        validation_rmse_kpa: curve,
+        ..figure()
+    };
+    let svg = inverse_figure(&figure).unwrap();
+    assert!(svg.len() < 200_000, "{}", svg.len());
+    assert!(svg.matches("<rect").count() < 1700, "{}", svg.matches("<rect").count());
+}

@@ -19,6 +19,8 @@ pub(crate) enum Change {
     Backwards,
     /// The gas pushes the wrong way.
     NeverRising,
+    /// Its friction drives.
+    Driving,
     /// It is another artifact.
     OtherSchema,
 }
@@ -49,7 +51,7 @@ pub(crate) fn model_json(change: Change) -> String {
             parameter("c10", 118.4e3, "Pa"),
             parameter("c01", 105.7e3, "Pa"),
             parameter("strand_modulus", 3e9, "Pa"),
-            parameter("rubber_friction", 1.2e-3, "1"),
+            parameter("rubber_friction", if change == Change::Driving { -1.2e-3 } else { 1.2e-3 }, "1"),
             parameter("strand_friction", 0.0, "1"),
         ],
         "composites": [],
@@ -77,7 +79,7 @@ pub(crate) fn model_json(change: Change) -> String {
         Change::NullPressure => model["domain"]["pressure_pa"][1] = Value::Null,
         Change::Backwards => model["domain"]["pressure_pa"] = json!([500e3, 500.0]),
         Change::OtherSchema => model["schema"] = json!("pam-diagnosis/1"),
-        Change::None | Change::NaN | Change::NeverRising => {}
+        Change::None | Change::NaN | Change::NeverRising | Change::Driving => {}
     }
     let text = serde_json::to_string_pretty(&model).expect("a value is text");
     if change == Change::NaN { text.replace("0.268", "NaN") } else { text }

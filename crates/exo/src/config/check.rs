@@ -162,6 +162,7 @@ impl LiftConfig {
                 integral_per_s3: within("controller.integral_per_s3", controller.integral_per_s3, 0.0, 1e6)?,
                 disturbance_observer: controller.disturbance_observer,
                 lag_compensation: controller.lag_compensation,
+                ramp: controller.ramp,
                 valve_lag_s: 1e-3 * within("controller.valve_lag_ms", controller.valve_lag_ms, 0.0, 5000.0)?,
                 transport_delay_s: 1e-3 * delay_ms,
                 pressure_loop_s: 1e-3

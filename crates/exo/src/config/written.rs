@@ -115,6 +115,9 @@ pub(super) struct ControllerToml {
     pub(super) integral_per_s3: f64,
     pub(super) disturbance_observer: bool,
     pub(super) lag_compensation: bool,
+    /// Left out, it is off.
+    #[serde(default)]
+    pub(super) ramp: bool,
     pub(super) valve_lag_ms: f64,
     pub(super) pressure_loop_ms: f64,
     pub(super) hysteresis_aware: bool,

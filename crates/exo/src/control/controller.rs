@@ -13,6 +13,7 @@
 //! | integral action      | `K_i ∫e`, held while the command is clipped                                          |
 //! | disturbance observer | opposes the acceleration `d` that the model leaves out; see [`Observer`]             |
 //! | lag compensation     | `p_c = p_m + τ_v [(p - p_m)/τ_c + κ (p_m + p_atm) V̇/V]`, and `q_s`, `q̈_s` later by what lag is left |
+//! | ramp                 | the command runs to `p` over the period, and `q_s`, `q̈_s` are those of its end        |
 //! | hysteresis-aware     | `z` by Dahl's model on the observed angle, instead of the sign of `q̇_s`              |
 //! | memory of effects    | `p = F⁻¹(f - m, l, z)`, `m` what effects beyond eq. 11 add to the settled force now    |
 //! | payload estimation   | weighs the load before the lift: mean of `r F(p_m, l, z)` over the hold              |
@@ -213,9 +214,12 @@ impl<'a> Controller<'a> {
     /// How far ahead a command takes effect, in s.
     pub fn look_ahead_s(&self) -> f64 {
         let settings = self.settings;
-        // A held command acts half a period late on average.
+        // A held command acts half a period late on average, a ramp arrives at the end of the period.
+        let arrives_s = if settings.ramp { settings.period_s } else { 0.5 * settings.period_s };
         if settings.lag_compensation {
-            settings.pressure_loop_s + settings.transport_delay_s + 0.5 * settings.period_s
+            settings.pressure_loop_s + settings.transport_delay_s + arrives_s
+        } else if settings.ramp {
+            arrives_s
         } else {
             0.0
         }

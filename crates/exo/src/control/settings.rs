@@ -28,6 +28,9 @@ pub struct ControlSettings {
     pub disturbance_observer: bool,
     /// Whether the valve's lag is compensated: a loop on the measured pressure, and a look ahead.
     pub lag_compensation: bool,
+    /// Whether the valve is told a ramp to the pressure at the end of the period, instead of a step to the pressure at its
+    /// beginning.
+    pub ramp: bool,
     /// Lag of the valve as the controller knows it, in s.
     pub valve_lag_s: f64,
     /// Transport delay as the controller knows it, in s.
@@ -54,6 +57,7 @@ impl ControlSettings {
             integral_per_s3: 0.0,
             disturbance_observer: false,
             lag_compensation: false,
+            ramp: false,
             hysteresis_aware: false,
             effect_memory: false,
             payload_estimation: false,

@@ -90,7 +90,9 @@ impl Valve {
         match self.physics.kind {
             ValveKind::Proportional => {
                 let wanted_pa = (command_pa - pressure_pa) * self.share_of_step;
-                let most_pa = self.step_s * stiffness_pa_per_kg * self.flow_kg_per_s(wanted_pa > 0.0, pressure_pa);
+                let open_pa = self.step_s * stiffness_pa_per_kg * self.flow_kg_per_s(wanted_pa > 0.0, pressure_pa);
+                // A muscle that is torn out of all proportion has no air that could be stiff.
+                let most_pa = open_pa.max(0.0);
                 pressure_pa + wanted_pa.clamp(-most_pa, most_pa)
             }
             ValveKind::OnOff => self.switch(pressure_pa, command_pa, stiffness_pa_per_kg),
@@ -179,6 +181,17 @@ mod tests {
             assert!((pulsed_pa - metered_pa).abs() < 3e3, "{pulsed_pa} {metered_pa}");
         }
         assert!((pulsed_pa - 80e3).abs() < 1e3);
+    }
+
+    #[test]
+    fn air_without_a_volume_lets_nothing_through() {
+        for kind in [ValveKind::Proportional, ValveKind::OnOff] {
+            for stiffness_pa_per_kg in [-1e9, f64::NAN] {
+                let mut valve = Valve::new(ValvePhysics { kind, ..PHYSICS }, 1e-3);
+                let pressure_pa = valve.advance(50e3, 80e3, stiffness_pa_per_kg);
+                assert!((pressure_pa - 50e3).abs() < f64::EPSILON, "{kind:?}: {pressure_pa}");
+            }
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Panel f: share of unseen points whose error is smaller.
+//! Panel e: share of unseen points whose error is smaller.
 
 use super::{CONTRACTING, EXTENDING};
 use crate::number::significant;
@@ -10,7 +10,7 @@ const MARKED: [f64; 3] = [50.0, 95.0, 100.0];
 const POINTS: usize = 400;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, errors_kpa: &[Vec<f64>; 2]) {
-    let (y, _) = title(canvas, cell, "f", "Errors on unseen points");
+    let (y, _) = title(canvas, cell, "e", "Errors on unseen points");
     let sorted = errors_kpa.each_ref().map(|errors| {
         let mut sizes: Vec<f64> = errors.iter().map(|error| error.abs()).filter(|size| *size > 0.0).collect();
         sizes.retain(|size| size.is_finite());
@@ -44,14 +44,14 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, errors_kpa: &[Vec<f64>; 
     legend(canvas, &keys, cell.right - 12.0, y + 12.0);
 }
 
-/// Quantiles in a corner that the curves, rising to the right, leave free.
+/// Quantiles in the corner below the curves, which rise to the right.
 fn write_quantiles(canvas: &mut Canvas<'_>, panel: &Panel, sorted: &[Vec<f64>; 2]) {
-    let (left, mut y) = (panel.frame.left + 12.0, panel.frame.top + 16.0);
+    let (right, mut y) = (panel.frame.right - 12.0, panel.frame.bottom - 52.0);
     for (percent, name) in MARKED.into_iter().zip(["median", "95 % below", "largest"]) {
-        canvas.text(name, (left, y), Anchor::Start, 11.5, palette::GRAY);
-        for ((sizes, color), x) in sorted.iter().zip([CONTRACTING, EXTENDING]).zip([112.0, 156.0]) {
+        canvas.text(name, (right - 90.0, y), Anchor::End, 11.5, palette::GRAY);
+        for ((sizes, color), x) in sorted.iter().zip([CONTRACTING, EXTENDING]).zip([44.0, 0.0]) {
             let text = if sizes.is_empty() { "–".to_owned() } else { significant(quantile(sizes, percent), 2) };
-            canvas.text(&text, (left + x, y), Anchor::End, 11.5, color.toward(palette::INK, 0.2));
+            canvas.text(&text, (right - x, y), Anchor::End, 11.5, color.toward(palette::INK, 0.2));
         }
         y += 17.0;
     }

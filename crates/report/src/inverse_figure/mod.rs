@@ -4,10 +4,10 @@
 //! |-------|-----------------------------------------------------------------------------------------|
 //! | a     | pressure of the network over length and force, with lines of equal pressure             |
 //! | b     | how steeply force grows with pressure, over length and pressure: without it, no inverse |
-//! | c, d  | pressure of the network less the exact one, contracting and extending                   |
-//! | e     | error over the epochs of the training                                                   |
-//! | f     | share of unseen points whose error is smaller                                           |
-//! | g     | error by region                                                                         |
+//! | c     | pressure of the network less the exact one, of the direction in which it errs more       |
+//! | d     | error over the epochs of the training                                                   |
+//! | e     | share of unseen points whose error is smaller, by direction                             |
+//! | f     | error by region                                                                         |
 
 mod color_maps;
 mod distribution;
@@ -109,7 +109,7 @@ const CONTRACTING: Color = palette::BLUE;
 /// Color of the extending muscle.
 const EXTENDING: Color = palette::VERMILION;
 
-/// Draws the figure, as an SVG document of 1500 × 1330 pixels.
+/// Draws the figure, as an SVG document of 1500 × 880 pixels.
 ///
 /// # Errors
 /// [`FigureError`] if there is no cell with an inverse.
@@ -118,17 +118,14 @@ pub fn inverse_figure(figure: &InverseFigure) -> Result<String, FigureError> {
     if !figure.maps.iter().any(|map| map.cells.iter().any(found)) {
         return Err(FigureError::NothingToInvert);
     }
-    Canvas::document(1500, 1330, &figure.title, |canvas, sheet| {
+    Canvas::document(1500, 880, &figure.title, |canvas, sheet| {
         let page = sheet.inset(14.0, 0.0, 14.0, 8.0);
         headline(canvas, page, figure);
-        let [top, middle, bottom] = page.inset(0.0, 64.0, 0.0, 0.0).rows([430.0, 430.0, 380.0], 10.0);
-        let [left, right] = top.columns([1.0, 1.0], 18.0);
+        let [top, bottom] = page.inset(0.0, 64.0, 0.0, 0.0).rows([400.0, 380.0], 10.0);
+        let [left, center, right] = top.columns([1.0; 3], 6.0);
         color_maps::pressure(canvas, left, &figure.maps[0]);
-        color_maps::slope(canvas, right, &figure.slopes);
-        let [left, right] = middle.columns([1.0, 1.0], 18.0);
-        let limit_kpa = color_maps::limit_kpa(&figure.maps);
-        color_maps::error(canvas, left, ("c", "contracting"), &figure.maps[0], limit_kpa);
-        color_maps::error(canvas, right, ("d", "extending"), &figure.maps[1], limit_kpa);
+        color_maps::slope(canvas, center, &figure.slopes);
+        color_maps::error(canvas, right, &figure.maps);
         let [left, center, right] = bottom.columns([1.0, 1.0, 1.1], 10.0);
         training::draw(canvas, left, figure);
         distribution::draw(canvas, center, &figure.errors_kpa);
@@ -143,7 +140,7 @@ fn headline(canvas: &mut Canvas<'_>, page: Rect, figure: &InverseFigure) {
 }
 
 fn regions(canvas: &mut Canvas<'_>, cell: Rect, regions: &[RegionBar]) {
-    title(canvas, cell, "g", "Error by region");
+    title(canvas, cell, "f", "Error by region");
     let bars = regions.iter().map(|region| Bar {
         name: region.name.clone(),
         value: region.rmse_kpa,

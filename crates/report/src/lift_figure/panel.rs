@@ -7,16 +7,24 @@ use crate::plot::{Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, 
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
     /// Name in the legend.
-    pub(super) text: &'static str,
+    text: &'static str,
     width: f64,
     color: Color,
     /// One value for each instant.
-    pub(super) values: Vec<f64>,
+    values: Vec<f64>,
 }
 
 impl Curve {
     pub(super) fn new(text: &'static str, width: f64, color: Color, values: Vec<f64>) -> Self {
         Self { text, width, color, values }
+    }
+
+    /// The curve of what `of` makes of each value and of what it should be.
+    pub(super) fn mapped(mut self, should: &[f64], of: impl Fn(f64, f64) -> f64) -> Self {
+        for (value, should) in self.values.iter_mut().zip(should) {
+            *value = of(*should, *value);
+        }
+        self
     }
 }
 

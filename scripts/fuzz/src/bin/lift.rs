@@ -15,12 +15,13 @@ const MOST_STEPS: f64 = 3000.0;
 fuzz_target!(|data: &[u8]| {
     let read = with_file(data, LiftConfig::read).map_err(|error| error.to_string());
     let Ok((_, plan, _)) = read else { return };
-    let model = nominal_model().augmented_model().of_the_muscle();
+    let artifact = nominal_model();
+    let model = artifact.augmented_model().of_the_muscle();
     let [lowest_pa, highest_pa] = plan.control.pressure_limits_pa;
     let inverse = ExactInverse::new(model.clone(), lowest_pa, highest_pa);
     let simulation = Simulation { plan: &plan, model: &model, inverse: &inverse, plant: &model };
     let duration_s = plan.handover_s + plan.hold_s + plan.reference.duration_s + plan.settle_s;
-    if check_reach(&simulation).is_ok() && duration_s / plan.step_s <= MOST_STEPS {
+    if check_reach(&simulation, &artifact.domain).is_ok() && duration_s / plan.step_s <= MOST_STEPS {
         let _ = simulation.run_nominal(1, |_, _| {});
     }
 });
