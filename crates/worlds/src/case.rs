@@ -159,6 +159,7 @@ fn log_all(
     traces: &[Trace],
     built: &[Option<crate::forms::Delay>],
     seed: u64,
+    noisy: bool,
 ) -> Vec<Log> {
     let delay = built.iter().copied().flatten().next();
     traces
@@ -166,7 +167,7 @@ fn log_all(
         .enumerate()
         .map(|(recording, trace)| {
             let mut dice = Dice::new(seed, 500 + recording as u64);
-            world.sensors.log(trace, paths[recording].dt_s, delay, &world.force, &mut dice)
+            world.sensors.log(trace, paths[recording].dt_s, delay, &world.force, noisy, &mut dice)
         })
         .collect()
 }
@@ -188,7 +189,7 @@ impl<'a> Stage<'a> {
         };
         let log_seed = dice.between(0, 1 << 40) as u64;
         let traces = run(&subject, &paths, Vec::new());
-        let plain = log_all(world, &paths, &traces, &[], log_seed);
+        let plain = log_all(world, &paths, &traces, &[], log_seed, true);
         let estimation = world.estimation;
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
@@ -222,10 +223,11 @@ impl<'a> Stage<'a> {
         Self { world, paths, subject, log_seed, setting, plain, plain_residuals, scales, floor_n }
     }
 
-    fn with(&self, built: Vec<Built>) -> Vec<Log> {
+    /// Logs of the first recordings with something concealed; without noise where only the truth is of interest.
+    fn seen(&self, built: Vec<Built>, recordings: usize, noisy: bool) -> Vec<Log> {
         let delays: Vec<Option<crate::forms::Delay>> = built.iter().map(|one| one.delay).collect();
-        let traces = run(&self.subject, &self.paths, built);
-        log_all(self.world, &self.paths, &traces, &delays, self.log_seed)
+        let traces = run(&self.subject, &self.paths[..recordings], built);
+        log_all(self.world, &self.paths, &traces, &delays, self.log_seed, noisy)
     }
 
     fn severity(&self, logs: &[Log]) -> f64 {
@@ -240,7 +242,8 @@ impl<'a> Stage<'a> {
 
     /// Place in the published range, 0…1, at which a form alone reaches about the severity aimed at.
     fn search(&self, form: &Form, form_dice: &Dice, aim: f64) -> Option<(f64, f64)> {
-        let severity = |u: f64| self.severity(&self.with(vec![self.build(form, form_dice, u)]));
+        let severity =
+            |u: f64| self.severity(&self.seen(vec![self.build(form, form_dice, u)], self.world.estimation, false));
         let top = severity(1.0);
         if !top.is_finite() || top < SEVERITIES.0 {
             return None;
@@ -306,7 +309,9 @@ impl Case {
                     case.truth.redraws = redraws;
                     return case;
                 }
-                None => redraws += 1,
+                None => {
+                    redraws += 1;
+                }
             }
         }
         unreachable!("the loop has no end")
@@ -338,7 +343,7 @@ impl Case {
                     .map(|((form, dice), &(u, _))| stage.build(form, dice, u))
                     .collect()
             };
-            let logs = if forms.is_empty() { stage.plain.clone() } else { stage.with(built()) };
+            let logs = if forms.is_empty() { stage.plain.clone() } else { stage.seen(built(), world.plan.len(), true) };
             if !may_be_slack && slack_share(&logs) > SLACK_SHARE {
                 // Less contraction everywhere keeps the muscle taut with the effect as well.
                 world.region.taut.iter_mut().for_each(|most| *most -= 0.015);

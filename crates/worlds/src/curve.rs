@@ -59,49 +59,61 @@ impl Curve {
     }
 }
 
-/// Function of two coordinates: a tensor of Chebyshev polynomials.
+/// Most nodes along one coordinate of a surface.
+const MOST_NODES: usize = 16;
+
+/// Three functions of two coordinates: tensors of Chebyshev polynomials on one grid.
 #[derive(Debug, Clone)]
-pub struct Surface {
+pub struct Surfaces {
     x: (f64, f64),
     y: (f64, f64),
-    count_y: usize,
-    coefficients: Vec<f64>,
+    count_x: usize,
+    /// By order in x, function, order in y.
+    coefficients: Vec<[f64; MOST_NODES]>,
 }
 
-impl Surface {
+/// Polynomials of all orders at a point of −1…1.
+fn basis(unit: f64) -> [f64; MOST_NODES] {
+    let mut values = [1.0; MOST_NODES];
+    values[1] = unit;
+    for order in 2..MOST_NODES {
+        values[order] = 2.0 * unit * values[order - 1] - values[order - 2];
+    }
+    values
+}
+
+impl Surfaces {
     /// From values at the nodes, row by row: `values[index_x * count_y + index_y]`.
-    pub fn from_nodes(x: (f64, f64), y: (f64, f64), count_x: usize, count_y: usize, values: &[f64]) -> Self {
-        let mut by_row = vec![0.0; count_x * count_y];
-        for row in 0..count_x {
-            by_row[row * count_y..][..count_y].copy_from_slice(&coefficients(&values[row * count_y..][..count_y]));
-        }
-        let mut both = by_row.clone();
-        for column in 0..count_y {
-            let along: Vec<f64> = (0..count_x).map(|row| by_row[row * count_y + column]).collect();
-            for (row, value) in coefficients(&along).into_iter().enumerate() {
-                both[row * count_y + column] = value;
+    pub fn from_nodes(x: (f64, f64), y: (f64, f64), count_x: usize, count_y: usize, functions: [&[f64]; 3]) -> Self {
+        let mut all = vec![[0.0; MOST_NODES]; 3 * count_x];
+        for (function, values) in functions.into_iter().enumerate() {
+            let mut by_row = vec![0.0; count_x * count_y];
+            for row in 0..count_x {
+                by_row[row * count_y..][..count_y].copy_from_slice(&coefficients(&values[row * count_y..][..count_y]));
+            }
+            for column in 0..count_y {
+                let along: Vec<f64> = (0..count_x).map(|row| by_row[row * count_y + column]).collect();
+                for (row, value) in coefficients(&along).into_iter().enumerate() {
+                    all[3 * row + function][column] = value;
+                }
             }
         }
-        Self { x, y, count_y, coefficients: both }
+        Self { x, y, count_x, coefficients: all }
     }
 
-    /// Value at `(x, y)`; beyond the ends the value at the end.
-    pub fn at(&self, x: f64, y: f64) -> f64 {
-        let unit_x = ((2.0 * x - self.x.0 - self.x.1) / (self.x.1 - self.x.0)).clamp(-1.0, 1.0);
-        let unit_y = ((2.0 * y - self.y.0 - self.y.1) / (self.y.1 - self.y.0)).clamp(-1.0, 1.0);
-        let (mut next, mut after) = (0.0, 0.0);
-        let mut first = 0.0;
-        for (index, row) in self.coefficients.chunks_exact(self.count_y).enumerate().rev() {
-            let value = clenshaw(row, unit_y);
-            if index == 0 {
-                first = value;
-            } else {
-                let here = 2.0 * unit_x * next - after + value;
-                after = next;
-                next = here;
+    /// Values at `(x, y)`; beyond the ends the values at the end.
+    pub fn at(&self, x: f64, y: f64) -> [f64; 3] {
+        let of_x = basis(((2.0 * x - self.x.0 - self.x.1) / (self.x.1 - self.x.0)).clamp(-1.0, 1.0));
+        let of_y = basis(((2.0 * y - self.y.0 - self.y.1) / (self.y.1 - self.y.0)).clamp(-1.0, 1.0));
+        let mut sums = [[0.0; MOST_NODES]; 3];
+        for (weight, rows) in of_x[..self.count_x].iter().zip(self.coefficients.chunks_exact(3)) {
+            for (sum, row) in sums.iter_mut().zip(rows) {
+                for (sum, value) in sum.iter_mut().zip(row) {
+                    *sum += weight * value;
+                }
             }
         }
-        unit_x * next - after + first
+        sums.map(|sum| sum.iter().zip(&of_y).map(|(a, b)| a * b).sum())
     }
 }
 
@@ -128,7 +140,7 @@ mod tests {
                 values.push(function(chebyshev_node(i, count_x, 0.0, 1.0), chebyshev_node(j, count_y, -1.0, 2.0)));
             }
         }
-        let surface = Surface::from_nodes((0.0, 1.0), (-1.0, 2.0), count_x, count_y, &values);
-        assert!((surface.at(0.37, 1.21) - function(0.37, 1.21)).abs() < 1e-8);
+        let surface = Surfaces::from_nodes((0.0, 1.0), (-1.0, 2.0), count_x, count_y, [&values, &values, &values]);
+        assert!((surface.at(0.37, 1.21)[1] - function(0.37, 1.21)).abs() < 1e-8);
     }
 }

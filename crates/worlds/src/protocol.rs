@@ -57,6 +57,8 @@ pub struct Region {
     pub least: f64,
     /// Most contraction at any pressure.
     pub most: f64,
+    /// Whether triangles are cycled as fast as the rig goes.
+    pub cycling: bool,
     /// Rest length, m.
     pub rest_m: f64,
     /// Highest speed, m/s.
@@ -147,7 +149,9 @@ impl Writer<'_> {
 
 /// Levels over the pressures in use, in random order.
 fn pressures(dice: &mut Dice, region: &Region, count: usize) -> Vec<f64> {
-    let low = dice.uniform(0.15, 0.3);
+    // From where at least a third of the stroke is taut.
+    let open_pa = region.least_pressure_pa(region.least + 0.35 * (region.most - region.least));
+    let low = dice.uniform(0.15, 0.3).max(open_pa / region.highest_pa).min(0.8);
     let mut levels: Vec<f64> = (0..count)
         .map(|index| {
             let share = if count == 1 { dice.uniform(0.4, 0.8) } else { index as f64 / (count - 1) as f64 };
@@ -201,6 +205,15 @@ fn isobaric(writer: &mut Writer, dice: &mut Dice, parts: usize, part_s: f64) {
         let span = writer.region.most_at(pressure_pa) - low;
         writer.go(pressure_pa, low, 0.1 * part_s);
         let heights: &[f64] = if staircase { &[0.35, 0.65, 1.0] } else { &[1.0, 1.0] };
+        if writer.region.cycling {
+            let speed_m_per_s = 0.7 * writer.region.fastest_m_per_s;
+            let cycles = 0.9 * part_s * speed_m_per_s / (2.0 * span.max(0.01) * writer.region.rest_m);
+            for _ in 0..cycles as usize {
+                writer.slide(low + span, speed_m_per_s);
+                writer.slide(low, speed_m_per_s);
+            }
+            continue;
+        }
         let way: f64 = heights.iter().map(|height| 2.0 * height * span).sum();
         let speed_m_per_s = (way * writer.region.rest_m / (0.9 * part_s)).min(writer.region.fastest_m_per_s);
         for &height in heights {
@@ -305,11 +318,14 @@ fn rate_ladder(writer: &mut Writer, dice: &mut Dice, duration_s: f64) {
         let fastest_m_per_s = 0.8 * writer.region.fastest_m_per_s;
         for rung in 0..rungs {
             let speed_m_per_s = fastest_m_per_s * 100f64.powf(-f64::from(rung) / f64::from(rungs - 1));
-            let height = (high - low).min(speed_m_per_s * rung_s / 2.0 / writer.region.rest_m);
+            let height = (high - low).min(speed_m_per_s * rung_s / 2.0 / writer.region.rest_m).max(1e-5);
             let middle = low + (high - low - height) * 0.5;
             let cycles = (rung_s * speed_m_per_s / (2.0 * height * writer.region.rest_m)).floor().max(1.0) as usize;
             writer.slide(middle, 0.3 * fastest_m_per_s);
             for _ in 0..cycles {
+                if writer.full() {
+                    return;
+                }
                 writer.slide(middle + height, speed_m_per_s);
                 writer.slide(middle, speed_m_per_s);
             }
@@ -437,6 +453,7 @@ mod tests {
             taut: (0..41).map(|index| -0.003 + 0.006 * f64::from(index)).collect(),
             highest_pa: 4e5,
             least: -0.003,
+            cycling: false,
             most: 0.2,
             rest_m: 0.25,
             fastest_m_per_s: 0.06,

@@ -174,8 +174,16 @@ fn late_s(delay: Option<Delay>, channel: Channel, time_s: f64) -> f64 {
 }
 
 impl Sensors {
-    /// Logs a trace. Equal generators give equal noise, whatever the trace.
-    pub fn log(&self, trace: &Trace, dt_s: f64, delay: Option<Delay>, force: &StaticForce, dice: &mut Dice) -> Log {
+    /// Logs a trace, or only its truth. Equal generators give equal noise, whatever the trace.
+    pub fn log(
+        &self,
+        trace: &Trace,
+        dt_s: f64,
+        delay: Option<Delay>,
+        force: &StaticForce,
+        noisy: bool,
+        dice: &mut Dice,
+    ) -> Log {
         let period_s = 1.0 / self.rate_hz;
         let span_s = (trace.force_n.len() - 1) as f64 * dt_s;
         let count = (span_s * self.rate_hz + 1e-6).floor() as usize + 1;
@@ -184,20 +192,23 @@ impl Sensors {
         let noise = |sensor: &Sensor, dice: &mut Dice| -> Vec<f64> {
             sensor.color.series(count, period_s, dice).into_iter().map(|value| value * sensor.noise).collect()
         };
-        let of_pressure = noise(&self.pressure, dice);
-        let of_length = noise(&self.length, dice);
-        let of_force = noise(&self.force, dice);
-        let filtered = [
-            self.pressure.filtered(&trace.pressure_pa, dt_s),
-            self.length.filtered(&trace.length_m, dt_s),
-            self.force.filtered(&trace.force_n, dt_s),
-        ];
+        let mut noise_of = [Vec::new(), Vec::new(), Vec::new()];
+        // Gaps are drawn before the noise, so that the same samples remain without it.
         let mut keep = vec![true; count];
         for _ in 0..self.gaps {
             let (from, length) = (dice.between(count / 10, count * 9 / 10), dice.uniform(0.05, 1.5) * self.rate_hz);
             let to = (from + length as usize).min(count - 1);
             keep[from..to].fill(false);
         }
+        if noisy {
+            noise_of = [noise(&self.pressure, dice), noise(&self.length, dice), noise(&self.force, dice)];
+        }
+        let [of_pressure, of_length, of_force] = noise_of;
+        let filtered = [
+            self.pressure.filtered(&trace.pressure_pa, dt_s),
+            self.length.filtered(&trace.length_m, dt_s),
+            self.force.filtered(&trace.force_n, dt_s),
+        ];
         let mut log = Log::default();
         let mut sum_n2 = 0.0;
         for index in 0..count {
@@ -210,19 +221,22 @@ impl Sensors {
             if !keep[index] {
                 continue;
             }
+            log.true_force_n.push(force_n);
+            log.true_inputs.push((pressure_pa, length_m));
+            log.state.push(at(&trace.state, instant_s / dt_s));
+            log.time_s.push(if self.stamps_show_jitter { instant_s } else { time_s });
+            if !noisy {
+                continue;
+            }
             let read_pa = self.pressure.quantized(pressure_pa + of_pressure[index]);
             let read_m = self.length.quantized(length_m + of_length[index]);
             let read_n = self.force.quantized(force_n + tare_n + of_force[index]);
             let (per_pa, per_m) = force.slopes(pressure_pa, length_m);
             let added_n = read_n - tare_n - force_n - per_pa * (read_pa - pressure_pa) - per_m * (read_m - length_m);
             sum_n2 += added_n * added_n;
-            log.time_s.push(if self.stamps_show_jitter { instant_s } else { time_s });
             log.pressure_pa.push(read_pa);
             log.length_m.push(read_m);
             log.force_n.push(read_n);
-            log.true_force_n.push(force_n);
-            log.true_inputs.push((pressure_pa, length_m));
-            log.state.push(at(&trace.state, instant_s / dt_s));
             if !trace.temperature_c.is_empty() {
                 log.temperature_c
                     .push(at(&trace.temperature_c, instant_s / dt_s) + 0.03 * of_force[index] / self.force.noise);

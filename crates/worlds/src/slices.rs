@@ -17,7 +17,7 @@
 
 use std::f64::consts::PI;
 
-use crate::curve::{Surface, chebyshev_node};
+use crate::curve::{Surfaces, chebyshev_node};
 use crate::draw::Dice;
 use crate::muscle::{Muscle, Parts};
 
@@ -38,9 +38,8 @@ struct Slice {
 /// Prepared force of a sliced muscle.
 #[derive(Debug, Clone)]
 pub struct SlicedMuscle {
-    gas_n: Surface,
-    bladder_n: Surface,
-    radius_m: Surface,
+    /// Force of gas and braid, of the bladder, and radius.
+    parts: Surfaces,
     /// Slices that it is made of.
     pub count: usize,
 }
@@ -217,18 +216,15 @@ impl SlicedMuscle {
         let (softer, _) = table(0.97)?;
         let bladder: Vec<f64> = total.iter().zip(&softer).map(|(whole, soft)| (whole - soft) / 0.03).collect();
         let gas: Vec<f64> = total.iter().zip(&bladder).map(|(whole, part)| whole - part).collect();
-        let surface =
-            |values: &[f64]| Surface::from_nodes((0.0, highest_pa), (from, to), COUNT_PRESSURE, COUNT_LENGTH, values);
-        Some(Self { gas_n: surface(&gas), bladder_n: surface(&bladder), radius_m: surface(&radii), count })
+        let grid = [gas.as_slice(), bladder.as_slice(), radii.as_slice()];
+        let parts = Surfaces::from_nodes((0.0, highest_pa), (from, to), COUNT_PRESSURE, COUNT_LENGTH, grid);
+        Some(Self { parts, count })
     }
 
     /// Parts of the force.
     pub fn parts(&self, pressure_pa: f64, length_m: f64) -> Parts {
-        Parts {
-            gas_n: self.gas_n.at(pressure_pa, length_m),
-            bladder_n: self.bladder_n.at(pressure_pa, length_m),
-            radius_m: self.radius_m.at(pressure_pa, length_m),
-        }
+        let [gas_n, bladder_n, radius_m] = self.parts.at(pressure_pa, length_m);
+        Parts { gas_n, bladder_n, radius_m }
     }
 }
 

@@ -98,7 +98,12 @@ pub struct Demands {
     pub slack: bool,
     /// Whether only fast motion shows the effect.
     pub fast: bool,
+    /// Whether only quiet sensors show the effect.
+    pub quiet: bool,
 }
+
+/// Effects that are small, or that a static map absorbs almost entirely.
+const QUIET: [&str; 4] = ["inertia", "load-dependent-friction", "end-taper", "rate-dependent-hysteresis"];
 
 impl Demands {
     /// Of some forms together.
@@ -108,6 +113,7 @@ impl Demands {
             slow: forms.iter().any(|form| form.slow),
             slack: forms.iter().any(|form| form.id == "slack"),
             fast: forms.iter().any(|form| form.id == "inertia"),
+            quiet: forms.iter().any(|form| form.slow || QUIET.contains(&form.id)),
         }
     }
 }
@@ -227,7 +233,7 @@ fn draw_sensors(dice: &mut Dice, demands: &Demands, muscle: &Muscle, force: &Sta
         bits,
         filter_s: filter_s(dice),
     };
-    let pressure = Sensor { noise: level(dice) * pressure.full_scale, ..pressure };
+    let pressure = Sensor { noise: 0.5 * level(dice) * pressure.full_scale, ..pressure };
     let length = Sensor { noise: 0.3 * level(dice) * length.full_scale, ..length };
     Sensors {
         rate_hz,
@@ -266,7 +272,7 @@ fn draw_plan(dice: &mut Dice, demands: &Demands, rate_hz: f64) -> (Vec<(Kind, f6
     if dice.chance(0.5) {
         kinds.push(*dice.pick(&KINDS));
     }
-    let rows = if demands.slow { 30_000.0 } else { 24_000.0 };
+    let rows = if demands.slow { 20_000.0 } else { 16_000.0 };
     let plan = kinds
         .into_iter()
         .map(|kind| {
@@ -304,13 +310,14 @@ impl World {
         let sensors = draw_sensors(dice, demands, &muscle, &force);
         let (plan, estimation) = draw_plan(dice, demands, sensors.rate_hz);
         let margin_n = if demands.slack { -35.0 } else { dice.uniform(8.0, 20.0) };
-        let fastest_m_per_s = dice.uniform(0.03, 0.1);
+        let fastest_m_per_s = if demands.slow { dice.uniform(0.06, 0.1) } else { dice.uniform(0.03, 0.1) };
         let taut = taut(&force, &friction, &muscle, margin_n);
         let deepest = taut.iter().copied().fold(0.0, f64::max);
         let region = Region {
             least: taut[0].clamp(-0.008, -0.001),
             most: (deepest * dice.uniform(0.8, 0.97)).min(0.27),
             taut,
+            cycling: demands.slow && dice.chance(0.8),
             highest_pa: muscle.highest_pressure_pa,
             rest_m: muscle.rest_length_m,
             fastest_m_per_s,

@@ -124,7 +124,8 @@ pub fn wear_set(_: &mut Dice, u: f64, setting: &Setting) -> Built {
     wear(0.0, size(u, 2e-4, 2e-3), 1.0, setting)
 }
 
-/// Drift of the load cell's zero; over the estimation recordings it stays within the ±5 N of a load cell's zero.
+/// Drift of the load cell's zero; over the estimation recordings it stays within the span of a
+/// load cell's zero, from −5 to 5 N.
 #[derive(Debug)]
 struct Drift {
     kind: u8,
@@ -149,7 +150,7 @@ impl Mechanism for Drift {
 }
 
 fn drift(kind: u8, dice: &mut Dice, u: f64, scale_s: f64) -> Built {
-    let size_n = dice.sign() * size(u, 0.4, 5.0);
+    let size_n = dice.sign() * size(u, 0.5, 9.0);
     let waves = [0.5, 1.1, 2.1, 3.7]
         .map(|rate: f64| (0.6 / rate.sqrt(), rate * dice.uniform(0.8, 1.2), dice.uniform(0.0, TAU)));
     Built::one(Drift { kind, size_n, scale_s, waves }).with("size_n", size_n)
