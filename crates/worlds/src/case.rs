@@ -1,0 +1,394 @@
+//! A case: a world, what is concealed in it, and how large that is beside the sensors.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::catalogue::{Form, Half, NAMED, NAMELESS, ids};
+use crate::draw::Dice;
+use crate::forms::{Built, Setting};
+use crate::place::Place;
+use crate::protocol::{Path, path};
+use crate::sensors::Log;
+use crate::severity::{Scales, residuals, rms_difference};
+use crate::simulate::{Subject, Trace, run};
+use crate::world::{Attributes, Bench, Demands, World};
+
+/// Kind of a case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CaseKind {
+    /// Nothing is concealed.
+    Nothing,
+    /// One effect of the catalogue.
+    One,
+    /// Two of them.
+    Two,
+    /// One that no catalogue has.
+    Nameless,
+}
+
+/// What to draw.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// Seed of everything.
+    pub seed: u64,
+    /// Cases.
+    pub cases: usize,
+    /// Half of the forms.
+    pub half: Half,
+    /// Only this bench.
+    pub bench: Option<Bench>,
+    /// Only this kind.
+    pub kind: Option<CaseKind>,
+}
+
+/// Least and most severity that is aimed at.
+const SEVERITIES: (f64, f64) = (1.2, 20.0);
+
+/// The truth of a case.
+#[derive(Debug, Clone, Serialize)]
+pub struct Truth {
+    /// Name of the folder.
+    pub case: String,
+    /// Kind.
+    pub kind: CaseKind,
+    /// Catalogue ids, or `nameless:<kind>`.
+    pub concealed: Vec<String>,
+    /// Form of each.
+    pub forms: Vec<&'static str>,
+    /// Size of each beside the floor, after a generic static refit.
+    pub severity_over_floor: Vec<f64>,
+    /// Where in its published range each is, 0…1.
+    pub severity_in_range: Vec<f64>,
+    /// Parameters of each.
+    pub parameters: Vec<BTreeMap<&'static str, f64>>,
+    /// Where each lives, if in a region.
+    pub place: Vec<Option<Place>>,
+    /// Attributes of the world.
+    pub world: Attributes,
+    /// Sampling rate, Hz.
+    pub rate_hz: f64,
+    /// Duration of each recording, s, by name.
+    pub duration_s: BTreeMap<String, f64>,
+    /// Protocol of each recording.
+    pub protocol: BTreeMap<String, crate::protocol::Kind>,
+    /// What sensors add to the force, N rms: noise and bits of the load cell, and those of pressure and length through the slopes.
+    pub floor_n: f64,
+    /// Deviation of the tare from recording to recording, N.
+    pub tare_n: f64,
+    /// Least and most true force of the estimation recordings, N.
+    pub force_range_n: (f64, f64),
+    /// Worlds that were drawn and given up because the effect could not be brought to show within its range.
+    pub redraws: usize,
+}
+
+/// A case, ready to be written.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Truth.
+    pub truth: Truth,
+    /// World.
+    pub world: World,
+    /// Logs, estimation first.
+    pub logs: Vec<Log>,
+    /// Seed of the caliper.
+    pub caliper_seed: u64,
+}
+
+/// Kinds of all cases: in proportion, in random order.
+fn kinds(request: &Request) -> Vec<CaseKind> {
+    let mut kinds: Vec<CaseKind> = (0..request.cases)
+        .map(|index| {
+            let share = (index as f64 + 0.5) / request.cases as f64;
+            match share {
+                low if low < 0.25 => CaseKind::Nothing,
+                low if low < 0.70 => CaseKind::One,
+                low if low < 0.85 => CaseKind::Two,
+                _ => CaseKind::Nameless,
+            }
+        })
+        .collect();
+    Dice::new(request.seed, 11).shuffle(&mut kinds);
+    request.kind.map_or(kinds, |kind| vec![kind; request.cases])
+}
+
+/// Effects of a case: the catalogue is gone through evenly, in an order of its own per seed.
+fn concealed(request: &Request, kinds: &[CaseKind], index: usize, dice: &mut Dice) -> Vec<&'static Form> {
+    let before = kinds[..index].iter().filter(|kind| **kind == kinds[index]).count();
+    let all = ids();
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    Dice::new(request.seed, 100 + (before / all.len()) as u64).shuffle(&mut order);
+    let of = |id: &str, dice: &mut Dice| -> &'static Form {
+        let forms: Vec<&'static Form> =
+            NAMED.iter().filter(|form| form.id == id && form.half == request.half).collect();
+        forms[dice.between(0, forms.len() - 1)]
+    };
+    let first = all[order[before % all.len()]];
+    match kinds[index] {
+        CaseKind::Nothing => Vec::new(),
+        CaseKind::One => vec![of(first, dice)],
+        CaseKind::Two => loop {
+            let second = *dice.pick(&all);
+            if second != first {
+                break vec![of(first, dice), of(second, dice)];
+            }
+        },
+        CaseKind::Nameless => {
+            let forms: Vec<&'static Form> = NAMELESS.iter().filter(|form| form.half == request.half).collect();
+            vec![forms[before % forms.len()]]
+        }
+    }
+}
+
+struct Stage<'a> {
+    world: &'a World,
+    paths: Vec<Path>,
+    subject: Subject<'a>,
+    log_seed: u64,
+    setting: Setting,
+    plain: Vec<Log>,
+    plain_residuals: Vec<f64>,
+    scales: Scales,
+    floor_n: f64,
+}
+
+fn log_all(
+    world: &World,
+    paths: &[Path],
+    traces: &[Trace],
+    built: &[Option<crate::forms::Delay>],
+    seed: u64,
+    noisy: bool,
+) -> Vec<Log> {
+    let delay = built.iter().copied().flatten().next();
+    traces
+        .iter()
+        .enumerate()
+        .map(|(recording, trace)| {
+            let mut dice = Dice::new(seed, 500 + recording as u64);
+            world.sensors.log(trace, paths[recording].dt_s, delay, &world.force, noisy, &mut dice)
+        })
+        .collect()
+}
+
+impl<'a> Stage<'a> {
+    fn new(world: &'a World, dice: &mut Dice) -> Self {
+        let mut path_dice = dice.fork();
+        let paths: Vec<Path> = world
+            .plan
+            .iter()
+            .map(|&(kind, duration_s)| path(kind, duration_s, world.dt_s, &mut path_dice, &world.region))
+            .collect();
+        let subject = Subject {
+            force: &world.force,
+            friction: world.friction.clone(),
+            rest_m: world.muscle.rest_length_m,
+            continuous: world.continuous,
+            start_seed: dice.between(0, 1 << 40) as u64,
+        };
+        let log_seed = dice.between(0, 1 << 40) as u64;
+        let traces = run(&subject, &paths, Vec::new());
+        let plain = log_all(world, &paths, &traces, &[], log_seed, true);
+        let estimation = world.estimation;
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+        };
+        let lengths = range(&mut paths[..estimation].iter().flat_map(|path| path.length_m.iter().copied()));
+        let pressures_pa = range(&mut paths[..estimation].iter().flat_map(|path| path.pressure_pa.iter().copied()));
+        let forces_n = range(&mut plain[..estimation].iter().flat_map(|log| log.true_force_n.iter().copied()));
+        let travel_m = paths[..estimation]
+            .iter()
+            .map(|path| path.length_m.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum::<f64>())
+            .sum();
+        let contraction = |length_m| world.muscle.contraction(length_m);
+        let bladder_n = -world.force.parts(0.5 * world.muscle.highest_pressure_pa, lengths.0).bladder_n;
+        let setting = Setting {
+            muscle: world.muscle.clone(),
+            contractions: (contraction(lengths.1), contraction(lengths.0)),
+            pressures_pa,
+            forces_n,
+            travel_m,
+            durations_s: world.plan.iter().map(|part| part.1).collect(),
+            estimation,
+            bladder_n: bladder_n.max(5.0),
+            period_s: 1.0 / world.sensors.rate_hz,
+        };
+        let half = |(low, high): (f64, f64), least: f64| (0.5 * (low + high), (0.5 * (high - low)).max(least));
+        let scales = Scales { pressure: half(pressures_pa, 2e4), length: half(lengths, 2e-3) };
+        let plain_residuals = residuals(&plain[..estimation], &plain[..estimation], scales);
+        let count: usize = plain[..estimation].iter().map(|log| log.time_s.len()).sum();
+        let sum: f64 = plain[..estimation].iter().map(|log| log.floor_n2 * log.time_s.len() as f64).sum();
+        let floor_n = (sum / count as f64).sqrt();
+        Self { world, paths, subject, log_seed, setting, plain, plain_residuals, scales, floor_n }
+    }
+
+    /// Logs of the first recordings with something concealed; without noise where only the truth is of interest.
+    fn seen(&self, built: Vec<Built>, recordings: usize, noisy: bool) -> Vec<Log> {
+        let delays: Vec<Option<crate::forms::Delay>> = built.iter().map(|one| one.delay).collect();
+        let traces = run(&self.subject, &self.paths[..recordings], built);
+        log_all(self.world, &self.paths, &traces, &delays, self.log_seed, noisy)
+    }
+
+    fn severity(&self, logs: &[Log]) -> f64 {
+        let estimation = self.world.estimation;
+        let with = residuals(&logs[..estimation], &self.plain[..estimation], self.scales);
+        rms_difference(&with, &self.plain_residuals) / self.floor_n
+    }
+
+    fn build(&self, form: &Form, form_dice: &Dice, u: f64) -> Built {
+        (form.build)(&mut form_dice.clone(), u, &self.setting)
+    }
+
+    /// Place in the published range, 0…1, at which a form alone reaches about the severity aimed at.
+    fn search(&self, form: &Form, form_dice: &Dice, aim: f64) -> Option<(f64, f64)> {
+        let severity =
+            |u: f64| self.severity(&self.seen(vec![self.build(form, form_dice, u)], self.world.estimation, false));
+        let top = severity(1.0);
+        if !top.is_finite() || top < SEVERITIES.0 {
+            return None;
+        }
+        if top <= aim {
+            return Some((1.0, top));
+        }
+        let bottom = severity(0.0);
+        if bottom >= aim {
+            return Some((0.0, bottom));
+        }
+        let (mut low, mut high) = ((0.0, bottom.max(1e-6)), (1.0, top));
+        let mut best = high;
+        for _ in 0..5 {
+            let share = (aim / low.1).ln() / (high.1 / low.1).ln();
+            let u = low.0 + (high.0 - low.0) * share.clamp(0.1, 0.9);
+            let at = severity(u);
+            best =
+                if (at / aim).ln().abs() < (best.1 / aim).ln().abs() || best.1 < SEVERITIES.0 { (u, at) } else { best };
+            if (at / aim).ln().abs() < 0.1 {
+                break;
+            }
+            if at < aim { low = (u, at.max(1e-6)) } else { high = (u, at) }
+        }
+        (best.1 >= SEVERITIES.0).then_some(best)
+    }
+}
+
+/// Share of samples that may pull less than a newton in worlds where the cable is to stay taut.
+const SLACK_SHARE: f64 = 0.003;
+
+fn slack_share(logs: &[Log]) -> f64 {
+    let (mut slack, mut all) = (0usize, 0usize);
+    for log in logs {
+        slack += log.true_force_n.iter().filter(|force_n| **force_n < 1.0).count();
+        all += log.true_force_n.len();
+    }
+    slack as f64 / all.max(1) as f64
+}
+
+/// Attempts after which other forms are drawn as well.
+const ATTEMPTS: usize = 12;
+
+impl Case {
+    /// Draws case `index` of a request.
+    pub fn draw(request: &Request, index: usize) -> Self {
+        let kinds = kinds(request);
+        let half = match request.half {
+            Half::Choose => 1,
+            Half::Report => 2,
+        };
+        let mut redraws = 0;
+        let mut forms = Vec::new();
+        for attempt in 0.. {
+            let mut dice = Dice::new(request.seed, (half * 1_000_000 + index as u64) * 1000 + attempt as u64);
+            if attempt % ATTEMPTS == 0 {
+                forms = concealed(request, &kinds, index, &mut dice.fork());
+            }
+            let bench = request.bench.unwrap_or(if index % 2 == 0 { Bench::Lumped } else { Bench::Slices });
+            let Some(mut world) = World::draw(&mut dice, bench, &Demands::of(&forms)) else { continue };
+            match Self::stage(kinds[index], index, &forms, &mut world, &mut dice) {
+                Some(mut case) => {
+                    case.truth.redraws = redraws;
+                    return case;
+                }
+                None => {
+                    redraws += 1;
+                }
+            }
+        }
+        unreachable!("the loop has no end")
+    }
+
+    fn stage(
+        kind: CaseKind,
+        index: usize,
+        forms: &[&'static Form],
+        world: &mut World,
+        dice: &mut Dice,
+    ) -> Option<Self> {
+        let may_be_slack = forms.iter().any(|form| form.id == "slack");
+        let stage_dice = dice.fork();
+        let aims: Vec<f64> = forms.iter().map(|_| dice.log_uniform(SEVERITIES.0 * 1.1, SEVERITIES.1)).collect();
+        let form_dice: Vec<Dice> = forms.iter().map(|_| dice.fork()).collect();
+        let caliper_seed = dice.between(0, 1 << 40) as u64;
+        for _ in 0..5 {
+            let stage = Stage::new(world, &mut stage_dice.clone());
+            let mut found = Vec::new();
+            for ((form, dice), &aim) in forms.iter().zip(&form_dice).zip(&aims) {
+                found.push(stage.search(form, dice, aim)?);
+            }
+            let built = || -> Vec<Built> {
+                forms
+                    .iter()
+                    .zip(&form_dice)
+                    .zip(&found)
+                    .map(|((form, dice), &(u, _))| stage.build(form, dice, u))
+                    .collect()
+            };
+            let logs = if forms.is_empty() { stage.plain.clone() } else { stage.seen(built(), world.plan.len(), true) };
+            if !may_be_slack && slack_share(&logs) > SLACK_SHARE {
+                // Less contraction everywhere keeps the muscle taut with the effect as well.
+                world.region.taut.iter_mut().for_each(|most| *most -= 0.015);
+                world.region.most -= 0.01;
+                if world.region.most < 0.05 {
+                    return None;
+                }
+                continue;
+            }
+            let described = built();
+            let (setting, floor_n) = (stage.setting.clone(), stage.floor_n);
+            let name = |recording: usize| {
+                if recording < world.estimation {
+                    format!("e{}", recording + 1)
+                } else {
+                    format!("h{}", recording - world.estimation + 1)
+                }
+            };
+            let truth = Truth {
+                case: format!("case{index:03}"),
+                kind,
+                concealed: forms
+                    .iter()
+                    .map(
+                        |form| {
+                            if form.id == "nameless" { format!("nameless:{}", form.form) } else { form.id.to_owned() }
+                        },
+                    )
+                    .collect(),
+                forms: forms.iter().map(|form| form.form).collect(),
+                severity_over_floor: found.iter().map(|found| found.1).collect(),
+                severity_in_range: found.iter().map(|found| found.0).collect(),
+                parameters: described.iter().map(|built| built.parameters.clone()).collect(),
+                place: described.into_iter().map(|built| built.place).collect(),
+                world: world.attributes.clone(),
+                rate_hz: world.sensors.rate_hz,
+                duration_s: (0..world.plan.len()).map(|recording| (name(recording), world.plan[recording].1)).collect(),
+                protocol: (0..world.plan.len()).map(|recording| (name(recording), world.plan[recording].0)).collect(),
+                floor_n,
+                tare_n: world.sensors.tare_n,
+                force_range_n: setting.forces_n,
+                redraws: 0,
+            };
+            return Some(Self { truth, world: world.clone(), logs, caliper_seed });
+        }
+        None
+    }
+}

@@ -1,0 +1,101 @@
+//! Files: one folder a case, and the truth apart from them.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::case::{Case, Request, Truth};
+use crate::draw::Dice;
+use crate::sensors::Log;
+
+/// The one file of truth.
+#[derive(Debug, Serialize)]
+struct TruthFile<'a> {
+    seed: u64,
+    half: &'static str,
+    cases: &'a [Truth],
+}
+
+/// The muscle as a caliper finds it: 0.3 mm of length, 0.07 mm of radius, 0.3°, 0.03 mm of wall and a fifth of the modulus, rms.
+fn muscle_toml(case: &Case) -> String {
+    let muscle = &case.world.muscle;
+    let mut dice = Dice::new(case.caliper_seed, 3);
+    let mut error = |rms: f64| case.world.caliper * rms * dice.normal();
+    let rest_length_mm = 1e3 * muscle.rest_length_m + error(0.3);
+    let rest_radius_mm = 1e3 * muscle.rest_radius_m + error(0.07);
+    let braid_angle_deg = muscle.braid_angle_rad.to_degrees() + error(0.3);
+    let wall_thickness_mm = (1e3 * muscle.wall_m + error(0.03)).max(0.3);
+    let strand_modulus_gpa = 1e-9 * muscle.strand_modulus_pa * (1.0 + error(0.2)).clamp(0.4, 1.8);
+    format!(
+        "rest_length_mm = {rest_length_mm:.2}\nrest_radius_mm = {rest_radius_mm:.3}\nbraid_angle_deg = {braid_angle_deg:.2}\n\
+         wall_thickness_mm = {wall_thickness_mm:.3}\nstrand_count = {}\nstrand_diameter_mm = {:.3}\n\
+         strand_modulus_gpa = {strand_modulus_gpa:.2}\n",
+        muscle.strand_count,
+        1e3 * muscle.strand_diameter_m,
+    )
+}
+
+fn recording_csv(log: &Log) -> String {
+    let mut text = String::with_capacity(48 * log.time_s.len());
+    let with_temperature = !log.temperature_c.is_empty();
+    text.push_str("time_s,pressure_kPa,length_mm,force_N");
+    text.push_str(if with_temperature { ",temperature_C\n" } else { "\n" });
+    for index in 0..log.time_s.len() {
+        let (time_s, pressure_kpa) = (log.time_s[index], 1e-3 * log.pressure_pa[index]);
+        let (length_mm, force_n) = (1e3 * log.length_m[index], log.force_n[index]);
+        let _ = write!(text, "{time_s:.6},{pressure_kpa:.4},{length_mm:.5},{force_n:.4}");
+        if with_temperature {
+            let _ = write!(text, ",{:.3}", log.temperature_c[index]);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn truth_csv(log: &Log) -> String {
+    let mut text = String::with_capacity(12 * log.time_s.len());
+    text.push_str("force_N\n");
+    for force_n in &log.true_force_n {
+        let _ = writeln!(text, "{force_n:.5}");
+    }
+    text
+}
+
+fn write_case(folder: &Path, request: &Request, index: usize) -> io::Result<Truth> {
+    let case = Case::draw(request, index);
+    let (files, apart) = (folder.join(&case.truth.case), folder.join("truth").join(&case.truth.case));
+    fs::create_dir_all(&files)?;
+    fs::create_dir_all(&apart)?;
+    fs::write(files.join("muscle.toml"), muscle_toml(&case))?;
+    for (recording, log) in case.logs.iter().enumerate() {
+        let name = if recording < case.world.estimation {
+            format!("e{}.csv", recording + 1)
+        } else {
+            let name = format!("h{}.csv", recording - case.world.estimation + 1);
+            fs::write(apart.join(&name), truth_csv(log))?;
+            name
+        };
+        fs::write(files.join(name), recording_csv(log))?;
+    }
+    Ok(case.truth)
+}
+
+/// Writes all cases of a request into a folder, and `truth.json` beside them. Returns the truth.
+pub fn write_all(folder: &Path, request: &Request) -> io::Result<Vec<Truth>> {
+    let cases: Vec<Truth> = (0..request.cases)
+        .into_par_iter()
+        .map(|index| write_case(folder, request, index))
+        .collect::<io::Result<_>>()?;
+    let half = match request.half {
+        crate::catalogue::Half::Choose => "choose",
+        crate::catalogue::Half::Report => "report",
+    };
+    let mut text = serde_json::to_string_pretty(&TruthFile { seed: request.seed, half, cases: &cases })?;
+    text.push('\n');
+    fs::write(folder.join("truth.json"), text)?;
+    Ok(cases)
+}
