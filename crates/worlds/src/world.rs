@@ -54,6 +54,8 @@ pub struct Attributes {
     pub jitter: bool,
     /// Whether the log has gaps.
     pub gaps: bool,
+    /// What the best cylinder leaves of the force, beside the floor; known once a case is made.
+    pub cylinder_misfit: &'static str,
     /// Estimation recordings.
     pub recordings: usize,
     /// Kinds of the estimation recordings.
@@ -354,6 +356,7 @@ impl World {
             filtered: sensors.force.filter_s > 0.0,
             jitter: sensors.jitter > 0.0,
             gaps: sensors.gaps > 0,
+            cylinder_misfit: "unknown",
             recordings: estimation,
             protocols: plan[..estimation].iter().map(|part| part.0).collect(),
         };
