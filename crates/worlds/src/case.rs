@@ -260,13 +260,13 @@ impl<'a> Stage<'a> {
         }
         let (mut low, mut high) = ((0.0, bottom.max(1e-6)), (1.0, top));
         let mut best = high;
-        for _ in 0..5 {
+        for _ in 0..3 {
             let share = (aim / low.1).ln() / (high.1 / low.1).ln();
             let u = low.0 + (high.0 - low.0) * share.clamp(0.1, 0.9);
             let at = severity(u);
             best =
                 if (at / aim).ln().abs() < (best.1 / aim).ln().abs() || best.1 < SEVERITIES.0 { (u, at) } else { best };
-            if (at / aim).ln().abs() < 0.1 {
+            if (at / aim).ln().abs() < 0.3 {
                 break;
             }
             if at < aim { low = (u, at.max(1e-6)) } else { high = (u, at) }
