@@ -7,10 +7,11 @@ use serde::Serialize;
 use crate::catalogue::{Form, Half, NAMED, NAMELESS, ids};
 use crate::draw::Dice;
 use crate::forms::{Built, Setting};
+use crate::lumped::LumpedMuscle;
 use crate::place::Place;
 use crate::protocol::{Path, path};
 use crate::sensors::Log;
-use crate::severity::{Scales, residuals, rms_difference};
+use crate::severity::{Scales, cylinder_misfit_n, residuals, rms_difference};
 use crate::simulate::{Subject, Trace, run};
 use crate::world::{Attributes, Bench, Demands, World};
 
@@ -75,6 +76,8 @@ pub struct Truth {
     pub protocol: BTreeMap<String, crate::protocol::Kind>,
     /// What sensors add to the force, N rms: noise and bits of the load cell, and those of pressure and length through the slopes.
     pub floor_n: f64,
+    /// What the best cylinder would leave of the force without the effect, N rms.
+    pub cylinder_misfit_n: f64,
     /// Deviation of the tare from recording to recording, N.
     pub tare_n: f64,
     /// Least and most true force of the estimation recordings, N.
@@ -257,13 +260,13 @@ impl<'a> Stage<'a> {
         }
         let (mut low, mut high) = ((0.0, bottom.max(1e-6)), (1.0, top));
         let mut best = high;
-        for _ in 0..5 {
+        for _ in 0..3 {
             let share = (aim / low.1).ln() / (high.1 / low.1).ln();
             let u = low.0 + (high.0 - low.0) * share.clamp(0.1, 0.9);
             let at = severity(u);
             best =
                 if (at / aim).ln().abs() < (best.1 / aim).ln().abs() || best.1 < SEVERITIES.0 { (u, at) } else { best };
-            if (at / aim).ln().abs() < 0.1 {
+            if (at / aim).ln().abs() < 0.3 {
                 break;
             }
             if at < aim { low = (u, at.max(1e-6)) } else { high = (u, at) }
@@ -362,7 +365,17 @@ impl Case {
                     format!("h{}", recording - world.estimation + 1)
                 }
             };
+            let cylinder = LumpedMuscle::new(&world.muscle);
+            let bladder_n = |length_m: f64| cylinder.parts(0.0, length_m).bladder_n;
+            let cylinder_misfit_n = cylinder_misfit_n(&stage.plain[..world.estimation], stage.scales, bladder_n);
+            let mut attributes = world.attributes.clone();
+            attributes.cylinder_misfit = match cylinder_misfit_n / floor_n {
+                below if below < 0.5 => "below-half-floor",
+                near if near < 1.5 => "about-floor",
+                _ => "above-floor",
+            };
             let truth = Truth {
+                cylinder_misfit_n,
                 case: format!("case{index:03}"),
                 kind,
                 concealed: forms
@@ -378,7 +391,7 @@ impl Case {
                 severity_in_range: found.iter().map(|found| found.0).collect(),
                 parameters: described.iter().map(|built| built.parameters.clone()).collect(),
                 place: described.into_iter().map(|built| built.place).collect(),
-                world: world.attributes.clone(),
+                world: attributes,
                 rate_hz: world.sensors.rate_hz,
                 duration_s: (0..world.plan.len()).map(|recording| (name(recording), world.plan[recording].1)).collect(),
                 protocol: (0..world.plan.len()).map(|recording| (name(recording), world.plan[recording].0)).collect(),

@@ -70,7 +70,7 @@ impl Muscle {
                 shear_modulus_pa,
                 thick_wall,
                 highest_pressure_pa,
-                span_m: (rest_length_m * (1.0 - most), rest_length_m * 1.03),
+                span_m: (rest_length_m * (1.0 - most), rest_length_m * 1.016),
             };
         }
     }

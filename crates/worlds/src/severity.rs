@@ -63,6 +63,30 @@ pub fn residuals(logs: &[Log], states: &[Log], scales: Scales) -> Vec<f64> {
         .collect()
 }
 
+/// What the best cylinder leaves, N rms: pressure times degree 2 in length, pressure squared, the bladder of an ideal
+/// cylinder with a slope, friction in three terms and a constant per recording.
+pub fn cylinder_misfit_n(logs: &[Log], scales: Scales, bladder_n: impl Fn(f64) -> f64) -> f64 {
+    let total: usize = logs.iter().map(|log| log.true_force_n.len()).sum();
+    let stride = total.div_ceil(SAMPLES).max(1);
+    let width = 9 + logs.len();
+    let (mut rows, mut right) = (Vec::new(), Vec::new());
+    for (recording, log) in logs.iter().enumerate() {
+        for index in (0..log.true_force_n.len()).step_by(stride) {
+            let (pressure_pa, length_m) = log.true_inputs[index];
+            let p = pressure_pa / (scales.pressure.0 + scales.pressure.1);
+            let l = (length_m - scales.length.0) / scales.length.1;
+            let (bladder, z) = (0.02 * bladder_n(length_m), log.state[index]);
+            rows.extend([p, p * l, p * l * l, p * p, bladder, bladder * l, z, z * p, z * p.max(0.0).powf(5.0 / 3.0)]);
+            rows.extend((0..logs.len()).map(|other| if other == recording { 1.0 } else { 0.0 }));
+            right.push(log.true_force_n[index]);
+        }
+    }
+    let solution = least_squares(&rows, &right, width);
+    let left: Vec<f64> =
+        rows.chunks_exact(width).map(|row| row.iter().zip(&solution).map(|(a, x)| a * x).sum()).collect();
+    rms_difference(&left, &right)
+}
+
 /// Least squares by normal equations with a trace of ridge, for columns that a protocol does not excite.
 fn least_squares(rows: &[f64], right: &[f64], width: usize) -> Vec<f64> {
     let mut normal = vec![0.0; width * width];

@@ -21,8 +21,10 @@ use crate::curve::{Surfaces, chebyshev_node};
 use crate::draw::Dice;
 use crate::muscle::{Muscle, Parts};
 
-const COUNT_PRESSURE: usize = 8;
-const COUNT_LENGTH: usize = 13;
+const COUNT_PRESSURE: usize = 10;
+const COUNT_LENGTH: usize = 16;
+/// Most that the interpolation may miss a solution by, N.
+const INTERPOLATION_N: f64 = 0.15;
 
 /// One slice as built.
 #[derive(Debug, Clone)]
@@ -218,7 +220,29 @@ impl SlicedMuscle {
         let gas: Vec<f64> = total.iter().zip(&bladder).map(|(whole, part)| whole - part).collect();
         let grid = [gas.as_slice(), bladder.as_slice(), radii.as_slice()];
         let parts = Surfaces::from_nodes((0.0, highest_pa), (from, to), COUNT_PRESSURE, COUNT_LENGTH, grid);
-        Some(Self { parts, count })
+        let sliced = Self { parts, count };
+        let problem = Problem { muscle, slices: &slices, bending_n_per_m, membrane: 1.0 };
+        (sliced.missed_n(&problem)? < INTERPOLATION_N).then_some(sliced)
+    }
+
+    /// Largest distance from solutions between the nodes where the muscle pulls, N.
+    fn missed_n(&self, problem: &Problem) -> Option<f64> {
+        let muscle = problem.muscle;
+        let mut most_n = 0.0_f64;
+        for pressure_share in [0.07, 0.33, 0.61, 0.93] {
+            let pressure_pa = pressure_share * muscle.highest_pressure_pa;
+            let mut radii = vec![muscle.rest_radius_m; self.count + 1];
+            let mut force_n = 0.0;
+            for step in 0..24 {
+                let length_m = muscle.rest_length_m * (1.008 - 0.01 * f64::from(step));
+                problem.solve(pressure_pa, length_m, &mut radii, &mut force_n)?;
+                if force_n < 0.0 {
+                    break;
+                }
+                most_n = most_n.max((self.parts(pressure_pa, length_m).total_n() - force_n).abs());
+            }
+        }
+        Some(most_n)
     }
 
     /// Parts of the force.

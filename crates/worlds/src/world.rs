@@ -54,6 +54,8 @@ pub struct Attributes {
     pub jitter: bool,
     /// Whether the log has gaps.
     pub gaps: bool,
+    /// What the best cylinder leaves of the force, beside the floor; known once a case is made.
+    pub cylinder_misfit: &'static str,
     /// Estimation recordings.
     pub recordings: usize,
     /// Kinds of the estimation recordings.
@@ -249,7 +251,7 @@ fn draw_sensors(dice: &mut Dice, demands: &Demands, muscle: &Muscle, force: &Sta
 
 fn draw_plan(dice: &mut Dice, demands: &Demands, rate_hz: f64) -> (Vec<(Kind, f64)>, usize) {
     let rich = dice.chance(0.8) || !demands.wants.is_empty() && dice.chance(0.3);
-    let count = if rich { dice.between(3, 6) } else { dice.between(1, 2) };
+    let count = if rich { dice.between(3, if demands.slow { 4 } else { 6 }) } else { dice.between(1, 2) };
     let mut kinds: Vec<Kind> = Vec::new();
     if !demands.wants.is_empty() {
         kinds.push(*dice.pick(&demands.wants));
@@ -272,12 +274,12 @@ fn draw_plan(dice: &mut Dice, demands: &Demands, rate_hz: f64) -> (Vec<(Kind, f6
     if dice.chance(0.5) {
         kinds.push(*dice.pick(&KINDS));
     }
-    let rows = if demands.slow { 20_000.0 } else { 16_000.0 };
+    let rows = if demands.slow { 14_000.0 } else { 12_000.0 };
     let plan = kinds
         .into_iter()
         .map(|kind| {
             let drawn_s = if demands.slow {
-                dice.log_uniform(90.0, 600.0)
+                dice.log_uniform(90.0, 360.0)
             } else {
                 match dice.weighted(&[0.1, 0.78, 0.12]) {
                     0 => dice.uniform(10.0, 30.0),
@@ -354,12 +356,13 @@ impl World {
             filtered: sensors.force.filter_s > 0.0,
             jitter: sensors.jitter > 0.0,
             gaps: sensors.gaps > 0,
+            cylinder_misfit: "unknown",
             recordings: estimation,
             protocols: plan[..estimation].iter().map(|part| part.0).collect(),
         };
         // At least four steps a sample, or 2 kHz where that is coarser.
         let over = if sensors.rate_hz >= 2000.0 { 1.0 } else { (2000.0 / sensors.rate_hz).ceil().min(4.0) };
-        let over = if sensors.rate_hz < 100.0 { (400.0 / sensors.rate_hz).ceil().max(4.0) } else { over };
+        let over = if sensors.rate_hz < 100.0 { (200.0 / sensors.rate_hz).ceil().max(4.0) } else { over };
         let dt_s = 1.0 / (sensors.rate_hz * over);
         Some(Self { muscle, force, friction, sensors, region, plan, estimation, caliper, continuous, attributes, dt_s })
     }

@@ -99,3 +99,47 @@ pub fn write_all(folder: &Path, request: &Request) -> io::Result<Vec<Truth>> {
     fs::write(folder.join("truth.json"), text)?;
     Ok(cases)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::Half;
+
+    #[test]
+    fn equal_seeds_write_equal_bytes_on_any_number_of_threads() {
+        let request = Request { seed: 5, cases: 6, half: Half::Choose, bench: None, kind: None };
+        let (first, again) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let truths = write_all(first.path(), &request).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        pool.install(|| write_all(again.path(), &request)).unwrap();
+        let mut names = vec!["truth.json".to_owned()];
+        for truth in &truths {
+            names.push(format!("{}/muscle.toml", truth.case));
+            names.push(format!("{}/e1.csv", truth.case));
+            names.push(format!("{}/h1.csv", truth.case));
+            names.push(format!("truth/{}/h1.csv", truth.case));
+        }
+        for name in names {
+            let (one, other) =
+                (fs::read(first.path().join(&name)).unwrap(), fs::read(again.path().join(&name)).unwrap());
+            assert!(!one.is_empty() && one == other, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_is_concealed_shows_and_the_muscle_stays_taut() {
+        for half in [Half::Choose, Half::Report] {
+            let request = Request { seed: 9, cases: 4, half, bench: None, kind: Some(crate::case::CaseKind::One) };
+            for index in 0..request.cases {
+                let case = Case::draw(&request, index);
+                assert!(case.truth.severity_over_floor.iter().all(|size| *size >= 1.2), "{:?}", case.truth);
+                if case.truth.concealed[0] != "slack" {
+                    let low =
+                        case.logs.iter().flat_map(|log| &log.true_force_n).filter(|force_n| **force_n < -3.0).count();
+                    let all: usize = case.logs.iter().map(|log| log.true_force_n.len()).sum();
+                    assert!(low < all / 100 + 1, "{:?}", case.truth);
+                }
+            }
+        }
+    }
+}

@@ -10,7 +10,8 @@
 //! In reading order: [`case`] (what a case is), [`sets`] (what is recorded), [`draw`] (what is concealed), [`rig`]
 //! (the bench), [`calibrate`] (how strong it is), [`seal`], [`folder`] (files of a case), [`programs`] (the diagnosis as
 //! subprocesses), [`heldout`] (error against the noise-free truth), [`score`], [`criteria`] and [`confusion`] (all
-//! cases together), [`results`] (what is written), [`run`] (all of it in order); [`real`] is the proof on real muscles.
+//! cases together), [`results`] (what is written), [`run`] (all of it in order); [`real`] is the proof on real muscles;
+//! [`worlds_score`] scores cases of the independent bench.
 
 pub mod calibrate;
 pub mod case;
@@ -29,3 +30,4 @@ pub mod score;
 pub mod seal;
 pub mod sets;
 pub mod statistics;
+pub mod worlds_score;
