@@ -10,13 +10,14 @@ use pam_core::effects::{AugmentedModel, Term};
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
 use pam_identification::evaluate::evaluate;
-use pam_identification::prepare::Prepared;
+use pam_identification::prepare::{Prepared, redirect};
 
 use crate::check;
 use crate::error::DiagnoseError;
 use crate::isolability::isolability;
 use crate::joint::HeldOut;
 use crate::knocks::{self, Knocks};
+use crate::laws;
 use crate::nuisance::MAP_ID;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::question::{Answer, Question};
@@ -27,6 +28,7 @@ use crate::structure::Remainder;
 use crate::track::Track;
 use crate::uncertainty::{Uncertainty, correlated_instants, entries, shape_errors};
 use crate::verdict::{Sizes, alternatives, verdict};
+use crate::veto;
 use crate::words;
 
 /// What to diagnose.
@@ -91,6 +93,9 @@ pub struct Diagnosis {
     pub holdout: Vec<Prepared>,
 }
 
+/// Times that another law of friction at standstill may be taken.
+const MOST_LAWS: usize = 2;
+
 /// Effects that may be named unless told otherwise.
 pub const MAX_EFFECTS: usize = 4;
 
@@ -118,9 +123,9 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
 /// # Errors
 /// As [`diagnose`].
 pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Result<Diagnosis, DiagnoseError> {
-    let Request { estimation, holdout, model, config, accept_implausible } = request;
-    let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
-    let track = Track::of(&estimation, model.direction, &model.force_model())?;
+    let Request { estimation, holdout, mut model, config, accept_implausible } = request;
+    let (mut estimation, mut holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
+    let mut track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
     let limits = Limits {
         max_effects: config.max_effects,
@@ -135,8 +140,24 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         observer(done.get(), steps);
     };
     observer(done.get(), steps);
+    let mut answer = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
+    for _ in 0..MOST_LAWS {
+        let question = Question::new(&estimation, &model, limits.clone());
+        let Some(standstill) = laws::better(&question, &answer.track, &answer.found, model.direction)? else { break };
+        model.direction.standstill = standstill;
+        redirect(&mut estimation, model.direction, model.form)?;
+        redirect(&mut holdout, model.direction, model.form)?;
+        track = Track::of(&estimation, model.direction, &model.force_model())?;
+        answer = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
+    }
     let question = Question::new(&estimation, &model, limits);
-    let Answer { track, found, knocks, sizes } = question.answer(track, &advance)?;
+    let Answer { track, mut found, knocks, mut sizes } = answer;
+    if !holdout.is_empty() && knocks.is_none() {
+        let held = Track::of(&holdout, model.direction, &model.force_model())?;
+        let nuisance = found.nuisance.clone();
+        found = veto::confirmed(&question.setting(&track, &nuisance), found, &held);
+        sizes = Sizes::of(&found, &question.limits);
+    }
     let setting = question.setting(&track, &found.nuisance);
     let space = &question.space;
     observer(steps - 1, steps);

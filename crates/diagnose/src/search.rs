@@ -279,7 +279,7 @@ fn upper_tail(t: f64) -> f64 {
 }
 
 /// A state with what it leaves of held-out blocks.
-fn judged(setting: &Setting<'_>, state: State) -> Option<Judged> {
+pub(crate) fn judged(setting: &Setting<'_>, state: State) -> Option<Judged> {
     let held_out = setting.hold_out(&state)?;
     Some(Judged { state, held_out })
 }
@@ -427,7 +427,8 @@ fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], 
             // of that coordinate replaces, unless that is where the effect lives.
             let lives_there = best.state.guesses[index].effect.page().coordinate == feature.coordinate;
             let replaced = !lives_there && without - beside < KEPT * gained;
-            (gained < STANDS_FOR_ITSELF * whole && (gained < structure || replaced)).then_some(rest)
+            let misshapen = lives_there && !feature.odd;
+            (misshapen || gained < STANDS_FOR_ITSELF * whole && (gained < structure || replaced)).then_some(rest)
         });
         match stand_in {
             Some(rest) => best = rest,

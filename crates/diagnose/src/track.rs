@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use pam_core::direction::Thresholds;
+use pam_core::direction::{Direction, Thresholds};
 use pam_core::force::ForceModel;
 use pam_core::motion::{Channels, Instant, walk};
 use pam_identification::error::IdentifyError;
@@ -111,6 +111,21 @@ impl Track {
         track.counted = track.instants.iter().map(counts).collect();
         track.sample();
         Ok(track)
+    }
+
+    /// The same instants with other `directions` of their recordings.
+    #[must_use]
+    pub fn redirected(&self, directions: &[Direction]) -> Self {
+        let mut other = self.clone();
+        for (range, direction) in self.recordings.iter().zip(directions) {
+            for (instant, counted) in other.instants[range.clone()].iter_mut().zip(&mut other.counted[range.clone()]) {
+                instant.moment.direction = direction.sign(instant.row);
+                instant.settled = direction.is_settled(instant.row);
+                *counted = instant.settled && instant.force_n.is_finite() && instant.moment.pressure_pa.is_finite();
+            }
+        }
+        other.sample();
+        other
     }
 
     /// Thins out what counts.

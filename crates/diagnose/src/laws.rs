@@ -1,0 +1,82 @@
+//! The law of friction at standstill, judged once more beside what was named.
+//!
+//! An identification chooses the law by what eq. 11 alone leaves, and an effect that is not in the model may have taken a part
+//! in that choice. Beside the effects and the static map the choice is theirs no longer.
+
+use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
+use pam_core::effects::Role;
+use pam_core::force::Form;
+use pam_identification::error::IdentifyError;
+use pam_identification::prepare::Prepared;
+
+use crate::coordinates::Coordinates;
+use crate::hypothesis::Guess;
+use crate::nuisance::Nuisance;
+use crate::question::Question;
+use crate::search::Found;
+use crate::track::Track;
+
+/// Laws that are compared.
+const LAWS: [Standstill; 5] = [
+    Standstill::Held,
+    Standstill::AT_ONCE,
+    Standstill::Slides { over_pa: 2e4 },
+    Standstill::Slides { over_pa: 5e4 },
+    Standstill::Slides { over_pa: 1.2e5 },
+];
+
+/// Share of the mean square that another law must leave at most to be taken.
+const CLEARLY: f64 = 0.9;
+
+/// A law that fits clearly better than that of `thresholds`, beside what was found; none where there is none.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub(crate) fn better(
+    question: &Question<'_>,
+    track: &Track,
+    found: &Found,
+    thresholds: Thresholds,
+) -> Result<Option<Standstill>, IdentifyError> {
+    if question.model.form == Form::AsPrinted || question.model.config.assumed.standstill.is_some() {
+        return Ok(None);
+    }
+    let mut best: Option<(f64, Standstill)> = None;
+    for standstill in LAWS.into_iter().filter(|law| *law != thresholds.standstill) {
+        let directions: Result<Vec<Direction>, IdentifyError> =
+            question.estimation.iter().map(|prepared| directed(prepared, Thresholds { standstill, ..thresholds })).collect();
+        let other = track.redirected(&directions?);
+        let both: Vec<bool> = track.counted.iter().zip(&other.counted).map(|(own, other)| *own && *other).collect();
+        // Where hardly anything is left to compare, nothing is decided.
+        if 2 * both.iter().filter(|counted| **counted).count() < track.n_counted() {
+            continue;
+        }
+        let [own, new] = [track, &other].map(|track| left(question, found, &Track { counted: both.clone(), ..track.clone() }));
+        if let (Some(own), Some(new)) = (own, new)
+            && new < CLEARLY * own
+            && best.is_none_or(|(lowest, _)| new / own < lowest)
+        {
+            best = Some((new / own, standstill));
+        }
+    }
+    Ok(best.map(|(_, standstill)| standstill))
+}
+
+fn directed(prepared: &Prepared, thresholds: Thresholds) -> Result<Direction, IdentifyError> {
+    Direction::of(&prepared.recording, thresholds, Driver::Motion)
+        .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })
+}
+
+/// Mean square that what was found leaves on `track`, in N²; what replaces the friction of eq. 11 is left out.
+fn left(question: &Question<'_>, found: &Found, track: &Track) -> Option<f64> {
+    let model = &found.best.state.model;
+    let coordinates = Coordinates::of(track);
+    let nuisance = Nuisance::of_recordings(track, question.limits.sensor_floor_n)
+        .with_reversals(track, &coordinates, model)
+        .with_map(track, &coordinates);
+    let setting = question.setting(track, &nuisance);
+    let guesses: Vec<Guess> =
+        found.best.state.guesses.iter().filter(|guess| guess.effect.role() != Role::Slides).cloned().collect();
+    let near = &found.best.state.fit.x[..question.space.free.len()];
+    Some(setting.fit(guesses, near, model)?.fit.mean_square)
+}
