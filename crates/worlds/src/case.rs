@@ -305,7 +305,7 @@ impl Case {
             if attempt % ATTEMPTS == 0 {
                 forms = concealed(request, &kinds, index, &mut dice.fork());
             }
-            let bench = request.bench.unwrap_or(if index % 2 == 0 { Bench::Lumped } else { Bench::Slices });
+            let bench = request.bench.unwrap_or(if index.is_multiple_of(2) { Bench::Lumped } else { Bench::Slices });
             let Some(mut world) = World::draw(&mut dice, bench, &Demands::of(&forms)) else { continue };
             match Self::stage(kinds[index], index, &forms, &mut world, &mut dice) {
                 Some(mut case) => {
