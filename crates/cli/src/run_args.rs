@@ -41,3 +41,14 @@ impl RunArgs {
         Ok(Console::new(self.quiet, self.format))
     }
 }
+
+/// A number above zero, as limits are.
+///
+/// # Errors
+/// What was expected instead.
+pub fn positive(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a number above 0".to_owned()),
+    }
+}
