@@ -45,7 +45,7 @@ pub(crate) struct Args {
     pub(crate) figure: Option<PathBuf>,
 
     /// Finish with exit code 1 where the RMSE, on the held-out recordings if there are any, is above X newton.
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", value_parser = pam_cli::positive, allow_negative_numbers = true)]
     pub(crate) max_rmse_n: Option<f64>,
 
     /// How eq. 11 is written: corrected, or with the paper's misprints.
@@ -78,17 +78,17 @@ pub(crate) struct Args {
     pub(crate) fix: Vec<(Parameter, f64)>,
 
     /// C01/C10 that their fitted sum is shared by.
-    #[arg(long, value_name = "RATIO", default_value_t = pam_identification::search_space::LATEX_RATIO)]
+    #[arg(long, allow_negative_numbers = true, value_name = "RATIO", default_value_t = pam_identification::search_space::LATEX_RATIO)]
     pub(crate) bladder_ratio: f64,
 
     /// By how many millimeters the length turns back before the direction of friction flips; by default five
     /// times the noise of the length channel.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, allow_negative_numbers = true, value_name = "MM")]
     pub(crate) length_play_mm: Option<f64>,
 
     /// By how many kPa the pressure turns back, while the length stands still, before the direction of friction
     /// flips; by default five times the noise of the pressure channel.
-    #[arg(long, value_name = "KPA")]
+    #[arg(long, allow_negative_numbers = true, value_name = "KPA")]
     pub(crate) pressure_play_kpa: Option<f64>,
 
     /// Particles of each swarm.

@@ -24,15 +24,19 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         return Ok(Verdict::Accepted);
     }
     let muscle_path = args.muscle.as_deref().context("--muscle is missing")?;
-    if let Some(limit) = args.max_rmse_n {
-        ensure!(limit > 0.0, "--max-rmse-n {limit} is not positive");
-    }
     for (name, value) in [("--length-play-mm", args.length_play_mm), ("--pressure-play-kpa", args.pressure_play_kpa)] {
         if let Some(value) = value {
-            ensure!(value >= 0.0 && value.is_finite(), "{name} {value} is negative");
+            ensure!(
+                value >= 0.0 && value.is_finite(),
+                "{name} {value} is no length or pressure to turn back by; give 0 or more"
+            );
         }
     }
-    ensure!(args.bladder_ratio >= 0.0 && args.bladder_ratio.is_finite(), "--bladder-ratio is negative");
+    ensure!(
+        args.bladder_ratio >= 0.0 && args.bladder_ratio.is_finite(),
+        "--bladder-ratio {} is no ratio of moduli; give 0 or more",
+        args.bladder_ratio
+    );
     let from_stdin = args.logs.iter().chain(&args.holdout).filter(|path| path.as_os_str() == "-").count();
     ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
     for held_out in &args.holdout {

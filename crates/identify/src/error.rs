@@ -60,4 +60,36 @@ pub enum IdentifyError {
         /// Length of a strand.
         strand_mm: f64,
     },
+    /// A model that has no force for samples that count.
+    #[error(
+        "{path}: the modelled force is no number in {n} of {n_counted} counted samples, first at {time_s:.3} s \
+         ({pressure_kpa:.1} kPa, {length_mm:.2} mm); {reason}"
+    )]
+    WithoutForce {
+        /// Recording.
+        path: String,
+        /// Samples without a modelled force.
+        n: usize,
+        /// Samples that count.
+        n_counted: usize,
+        /// When the first of them was recorded, in s.
+        time_s: f64,
+        /// Its gauge pressure, in kPa.
+        pressure_kpa: f64,
+        /// Its length, in mm.
+        length_mm: f64,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// A recording of which no sample counts.
+    #[error(
+        "{path}: none of its {n_rows} samples counts, since all lie around reversals, before the first motion or beyond \
+         a sensor's range; record for longer"
+    )]
+    NothingCounted {
+        /// Recording.
+        path: String,
+        /// Its samples.
+        n_rows: usize,
+    },
 }

@@ -103,6 +103,13 @@ pub enum Fault {
 /// [`std::io::Error`] where samples cannot be read back.
 pub fn find(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> {
     for gate in gates {
+        // Without a force only ranges can be judged.
+        if !gate.recording.samples.has_force() {
+            if let Some(fault) = ranges::check(gate, muscle) {
+                return Ok(Some(fault));
+            }
+            continue;
+        }
         let looks = channels::Look::at(&gate.recording)?;
         // Swapped channels have implausible ranges, too, and are the better explanation.
         let fault = channels::swapped(gate, &looks, muscle)
