@@ -43,7 +43,7 @@ pub use units::Quantity;
 use std::ops::Range;
 
 /// One recording as read.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Recording {
     /// Path as given on the command line; `-` for standard input.
     pub path: String,
