@@ -92,4 +92,18 @@ pub enum IdentifyError {
         /// Its samples.
         n_rows: usize,
     },
+    /// Every parameter is held by the user.
+    #[error("every parameter is held with --fix, and nothing is left to fit; leave one of them out")]
+    EverythingFixed,
+    /// Recordings that say nothing of any parameter.
+    #[error(
+        "{path}: these recordings can identify none of {names}; record several pressures at several lengths, with motion \
+         both ways"
+    )]
+    NothingIdentifiable {
+        /// First estimation recording.
+        path: String,
+        /// The parameters.
+        names: String,
+    },
 }

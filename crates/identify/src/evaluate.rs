@@ -107,6 +107,8 @@ impl Tally {
         let n = self.n_samples.max(1) as f64;
         let spread = (self.force_squares - self.forces * self.forces / n).max(f64::MIN_POSITIVE);
         let share = self.residual_squares / spread;
+        // A force that never varies, as under a dead weight, leaves nothing of itself to explain.
+        let share = if share.is_finite() { share } else { 1.0 };
         FitStatistics {
             rmse_n: (self.residual_squares / n).sqrt(),
             rmse_all_n: ((self.residual_squares + self.unsettled_squares)

@@ -148,6 +148,7 @@ pub fn check(request: Request) -> Result<Checked, IdentifyError> {
         bladder_ratio: request.bladder_ratio,
         length_play_m: request.length_play_m,
         pressure_play_pa: request.pressure_play_pa,
+        accept_implausible: request.accept_implausible,
         unbounded: request.unbounded,
     })
 }
@@ -166,6 +167,7 @@ pub struct Checked {
     bladder_ratio: f64,
     length_play_m: Option<f64>,
     pressure_play_pa: Option<f64>,
+    accept_implausible: bool,
     unbounded: bool,
 }
 
@@ -204,6 +206,7 @@ impl Checked {
         let condensed = condense(&estimation, &columns, 1, None)?;
         enough(&estimation[0].recording.path, condensed.total.n_rows() as usize)?;
         let (space, unidentifiable) = self.search_space(&columns, &condensed, force_noise_n);
+        excitation::something_to_fit(&space, &unidentifiable, &estimation[0].recording.path)?;
         let problem = ForceProblem { summary: &condensed.total, columns: &columns, space: &space, steps: &[] };
         let column_floor_rmse_n = problem.floor_mean_square().sqrt();
         let (fit, lags) =
@@ -382,6 +385,7 @@ impl Checked {
                 })
                 .collect(),
             bladder_ratio: self.bladder_ratio,
+            accept_implausible: self.accept_implausible,
         }
     }
 }
