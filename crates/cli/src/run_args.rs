@@ -76,6 +76,17 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number of any sign and size, infinite ones included, but none that is no number.
+///
+/// # Errors
+/// What was expected instead.
+pub fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if !value.is_nan() => Ok(value),
+        _ => Err("expected a number".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
