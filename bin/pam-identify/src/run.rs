@@ -8,6 +8,7 @@ use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
 use pam_core::recording::Recording;
+use pam_identification::faults::{spikes, twice, zero};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
@@ -56,6 +57,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let (muscle, muscle_input) = read_muscle(muscle_path)?;
     let estimation = read_recordings(&args.logs, &args.read.options(), &console)?;
     let validation = read_recordings(&args.holdout, &args.read.options(), &console)?;
+    twice::check(&estimation, &validation)?;
     let mut hashes = vec![muscle_input];
     hashes.extend(estimation.iter().map(|recording| Input::recording(recording, InputRole::Estimation)));
     hashes.extend(validation.iter().map(|recording| Input::recording(recording, InputRole::Validation)));
@@ -73,7 +75,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let found = checked.identify_observed(&|| progress.advance(1))?;
     drop(progress);
     let tool = Tool { name: "pam-identify".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
-    let artifact = found.artifact(tool, hashes, config, args.run.seed);
+    let mut artifact = found.artifact(tool, hashes, config, args.run.seed);
+    for prepared in found.estimation.iter().chain(&found.validation) {
+        artifact.warnings.extend(spikes::warning(&prepared.recording, &prepared.quality)?);
+    }
+    // Instruments are suspected where a fit ends at no muscle; what they explain is searched for then.
+    if implausible(&found).is_some() {
+        artifact.warnings.extend(zero::explain(&found)?);
+    }
 
     console.text(tables::parameters(&artifact));
     console.text(tables::agreement(&artifact));

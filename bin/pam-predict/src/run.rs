@@ -6,6 +6,7 @@ use pam_core::artifact::ModelArtifact;
 use pam_core::effects::{AugmentedModel, Kind};
 use pam_core::recording::ReadOptions;
 use pam_identification::evaluate::{NoForceAt, evaluate_augmented, without_force};
+use pam_identification::faults::spikes;
 use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare, prepare_plausible};
 use pam_identification::prepare::Prepared;
 
@@ -31,6 +32,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     );
     let prepared =
         if args.accept_implausible { prepare(recording, &artifact)? } else { prepare_plausible(recording, &artifact)? };
+    if let Some(words) = spikes::warning(&prepared.recording, &prepared.quality)? {
+        console.warn(words);
+    }
     for words in outside(&prepared, &artifact.domain) {
         console.warn(words);
     }

@@ -106,4 +106,33 @@ pub enum IdentifyError {
         /// The parameters.
         names: String,
     },
+    /// A recording that is fitted twice, so that its samples count twice.
+    #[error(
+        "{path}: has the same samples as {other}, which is fitted as well; a recording counts once, or standard errors are \
+         too small: leave one of them out"
+    )]
+    FittedTwice {
+        /// The recording.
+        path: String,
+        /// The one before it.
+        other: String,
+    },
+    /// A recording that is fitted and held out.
+    #[error(
+        "{path}: has the same samples as {other}, which is fitted; a hold-out must be a recording that nothing was fitted to"
+    )]
+    HeldOutAndFitted {
+        /// Held-out recording.
+        path: String,
+        /// Estimation recording.
+        other: String,
+    },
+    /// A recording that is held out twice.
+    #[error("{path}: has the same samples as {other}, which is held out as well; leave one of them out")]
+    HeldOutTwice {
+        /// The recording.
+        path: String,
+        /// The one before it.
+        other: String,
+    },
 }

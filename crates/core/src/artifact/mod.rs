@@ -172,7 +172,7 @@ pub(crate) fn read<T: DeserializeOwned>(
         path: path.to_owned(),
         line: error.line(),
         column: error.column(),
-        reason: suggesting(&without_position(&error.to_string())),
+        reason: suggesting(&in_words(&without_position(&error.to_string()))),
         expected,
     };
     let head: Head = serde_json::from_slice(&bytes).map_err(|error| parse(&error))?;
@@ -196,6 +196,14 @@ fn remedy(found: &str, expected: &str, program: &str) -> String {
             format!("a newer version wrote it; update the programs, or write it anew with {program}")
         }
         _ => format!("write it with {program}"),
+    }
+}
+
+/// The message of a JSON error without names of types, which nobody outside this program knows.
+fn in_words(message: &str) -> String {
+    match message.split_once("expected struct ") {
+        Some((before, _)) => format!("{before}expected an object"),
+        None => message.to_owned(),
     }
 }
 
