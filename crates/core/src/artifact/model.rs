@@ -503,7 +503,7 @@ mod tests {
             refusal(&|artifact| artifact.parameters.push(parameter("rest_lenght", 0.26, "m"))),
             refusal(&|artifact| artifact.parameters.push(parameter("gears", 4.0, "1"))),
             refusal(&|artifact| {
-                artifact.parameters.extend([0.26, 0.27].map(|value| parameter("rest_length", value, "m")))
+                artifact.parameters.extend([0.26, 0.27].map(|value| parameter("rest_length", value, "m")));
             }),
             refusal(&|artifact| artifact.parameters[5].value = -1e300),
         ];

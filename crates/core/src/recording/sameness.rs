@@ -137,9 +137,8 @@ fn count_found(probes: &[Probe], among: &Recording) -> io::Result<usize> {
     let mut cells: Vec<Vec<usize>> = vec![Vec::new(); CELLS + 1];
     for (index, probe) in probes.iter().enumerate() {
         let first = probe.rows[0][key];
-        for cell in cell(first - tolerance[key])..=cell(first + tolerance[key]).min(CELLS) {
-            cells[cell].push(index);
-        }
+        let near = cell(first - tolerance[key])..=cell(first + tolerance[key]).min(CELLS);
+        cells[near].iter_mut().for_each(|cell| cell.push(index));
     }
     let mut is_found = vec![false; probes.len()];
     // A run may go on in the next chunk.
@@ -156,7 +155,7 @@ fn count_found(probes: &[Probe], among: &Recording) -> io::Result<usize> {
         let end = if is_last { before.len() } else { before.len().saturating_sub(reach) };
         for start in 0..end {
             let value = before[start][key];
-            if !(value >= lowest) {
+            if value < lowest {
                 continue;
             }
             let Some(candidates) = cells.get(cell(value)) else { continue };

@@ -99,7 +99,7 @@ pub fn find(recording: &Recording) -> io::Result<Option<Fault>> {
                 (lowest, highest) = (lowest.min(value), highest.max(value));
             }
         }
-        if !(highest > lowest) {
+        if highest <= lowest {
             continue;
         }
         let mut runs = Runs { lowest, highest, value: f64::NAN, bend: 0.0, ..Runs::default() };
@@ -150,7 +150,7 @@ mod tests {
         let clipped: Vec<f64> = (0..2000).map(|row| noisy(row).min(200.0)).collect();
         assert_eq!(runs(&clipped), None);
         // A path without noise may rest, and so may a channel with coarse steps.
-        let smooth: Vec<f64> = (0..2000).map(|row| (0.003 * row.min(900).max(300) as f64).sin()).collect();
+        let smooth: Vec<f64> = (0..2000).map(|row| (0.003 * row.clamp(300, 900) as f64).sin()).collect();
         assert_eq!(runs(&smooth), None);
         let coarse: Vec<f64> = (0..2000).map(|row| (noisy(row.min(500)) / 40.0).round()).collect();
         assert_eq!(runs(&coarse), None);

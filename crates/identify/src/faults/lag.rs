@@ -174,7 +174,7 @@ fn find_one(windows: &[Window], columns: &ForceColumns, shifted: Shifted, stride
         }
     }
     let explained = 1.0 - (best.1 / middle).powi(2);
-    if best.0 == 0 || !(explained > worth) {
+    if best.0 == 0 || explained.is_nan() || explained <= worth {
         return None;
     }
     // Between rows, by a parabola through three of them.

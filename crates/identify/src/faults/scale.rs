@@ -106,7 +106,7 @@ fn gain(look: &Look, muscle: &Muscle) -> Option<(f64, f64)> {
     let found = inverse * (right + trust * usual);
     let residual = (squares - 2.0 * found.dot(&right) + (normal * found).dot(&found)).max(0.0);
     let spread = squares - sum * sum / n.max(1.0);
-    if n < 16.0 || !(spread > 0.0) {
+    if n < 16.0 || spread <= 0.0 {
         return None;
     }
     Some((found[0], 1.0 - residual / spread))

@@ -88,7 +88,7 @@ fn all(recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<Spik
         let range = spread[spread.len() - 1 - cut] - spread[cut];
         let noise = quality.channel(channel).map_or(0.0, |channel| channel.noise);
         let least = (SHARE_OF_RANGE * range).max(TIMES_NOISE * noise);
-        if !(least > 0.0) {
+        if least <= 0.0 {
             continue;
         }
         let gross = range.max(least);

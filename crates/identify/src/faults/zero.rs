@@ -64,7 +64,7 @@ pub fn explain(found: &Identified) -> io::Result<Option<String>> {
         take(here_pa + pitch_pa);
     }
     let (shift_pa, left_n) = best;
-    if !(left_n < LEFT * as_is_n) {
+    if left_n.is_nan() || left_n >= LEFT * as_is_n {
         return Ok(None);
     }
     let lowest_pa = samples.iter().map(|sample| sample.0).fold(f64::INFINITY, f64::min);
