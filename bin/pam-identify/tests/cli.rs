@@ -653,7 +653,7 @@ fn a_spike_is_located_and_does_not_count_and_one_beyond_everything_is_refused() 
         (model.fit.estimation, model.warnings)
     };
     let (clean, _) = rmse("good.csv");
-    bench.file("low.csv", with_spike(120.0));
+    bench.file("low.csv", with_spike(300.0));
     let (spiked, warnings) = rmse("low.csv");
     assert!((spiked.rmse_n - clean.rmse_n).abs() < 0.01, "{} {}", spiked.rmse_n, clean.rmse_n);
     assert_eq!(spiked.n_unsettled, clean.n_unsettled + 1);
