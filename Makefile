@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
 PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench
 
-.PHONY: all install test check bench compare tables tutorial hard-use fuzz datasets recordings prove prove-real clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial hard-use odd-inputs fuzz datasets recordings prove prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -76,6 +76,11 @@ tutorial: cargo-is-there
 hard-use: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/hard-use --bin $(BIN)
+
+# Nine hundred inputs, each a little wrong: exit code, message and files of every one.
+odd-inputs: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/odd-inputs --bin $(BIN)
 
 # Broken input for every reader: SECONDS for each, one after another.
 SECONDS ?= 60

@@ -72,20 +72,20 @@ pub(crate) struct Args {
 
     /// Add a smooth error of the form, which has no name, of so many newtons root mean square over all pressures
     /// and contractions of the protocols.
-    #[arg(long, value_name = "X", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = pam_cli::number, allow_negative_numbers = true)]
     pub(crate) smooth_misfit_n: f64,
 
     /// Sampling rate of the logger, in Hz.
-    #[arg(long, value_name = "HZ", default_value_t = 200.0)]
+    #[arg(long, value_name = "HZ", value_parser = pam_cli::number, default_value_t = 200.0)]
     pub(crate) rate: f64,
 
     /// Duration relative to the catalogue: shortens holds and sweeps and leaves out cycles; where one cycle
     /// is left, it runs faster.
-    #[arg(long, value_name = "X", default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = pam_cli::number, allow_negative_numbers = true)]
     pub(crate) duration_scale: f64,
 
     /// Highest pressure, in kPa; the pressures of a protocol are scaled to it.
-    #[arg(long, value_name = "KPA", default_value_t = 500.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "KPA", default_value_t = 500.0, value_parser = pam_cli::number, allow_negative_numbers = true)]
     pub(crate) highest_pressure: f64,
 
     /// Lowest tension that a contracting muscle is taken to, in N; -inf lets it hang slack.
@@ -94,19 +94,19 @@ pub(crate) struct Args {
 
     /// Noise of every channel relative to that of the sensors, which is 0.5 kPa, 0.03 mm and 0.2 N; 0 leaves
     /// only quantization.
-    #[arg(long, value_name = "X", default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = pam_cli::number, allow_negative_numbers = true)]
     pub(crate) noise: f64,
 
     /// Standard deviation of the force noise, in N, instead of that of the load cell; --noise has no part in it.
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = pam_cli::number, allow_negative_numbers = true)]
     pub(crate) force_noise_n: Option<f64>,
 
     /// Share of the colored force noise that remains after 5 ms, from 0 (white) to below 1.
-    #[arg(long, value_name = "RHO", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RHO", default_value_t = 0.0, value_parser = pam_cli::number, allow_negative_numbers = true)]
     pub(crate) force_noise_correlation: f64,
 
     /// Share of the variance of the force noise that is colored; the rest is white.
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = pam_cli::number, allow_negative_numbers = true)]
     pub(crate) force_noise_colored_share: f64,
 
     /// Clock of the logger: ideal, or cut to whole milliseconds, so that stamps repeat above 1 kHz.

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow};
 use pam_cli::{Console, Output, OutputError, Verdict, finish_all, nearest};
+use pam_core::artifact::{Input, InputRole, sha256_hex};
 use pam_core::muscle::MuscleFile;
 use pam_virtual_bench::bench::BenchError;
 use pam_virtual_bench::catalogue::EFFECTS;
@@ -28,7 +29,7 @@ pub(crate) fn run(args: &Args) -> Result<Verdict> {
         list_effects()?;
         return Ok(Verdict::Accepted);
     }
-    let muscle = muscle(args)?;
+    let (muscle, muscle_input) = muscle(args)?;
     let inputs = args.muscle.as_deref();
     let open = |path: &Path| -> Result<Output> { Ok(Output::open(path)?.apart_from(inputs)?) };
     let mut outputs = Vec::new();
@@ -49,7 +50,7 @@ pub(crate) fn run(args: &Args) -> Result<Verdict> {
         bench.record(args.run.seed).write_csv(&mut out)?;
         outputs.push(out);
         if let Some(mut truth) = truth {
-            let artifact = Truth::of(&bench, protocol, args)?;
+            let artifact = Truth::of(&bench, protocol, args, muscle_input);
             serde_json::to_writer_pretty(&mut truth, &artifact)?;
             writeln!(truth)?;
             outputs.push(truth);
@@ -79,17 +80,21 @@ fn protocol_named(name: &str) -> Result<Protocol> {
     })
 }
 
-/// The muscle: as in the file with nominal parameters, or at random; then as set.
-fn muscle(args: &Args) -> Result<TrueMuscle> {
+/// The muscle: as in the file with nominal parameters, or at random; then as set. With the file that it is from.
+fn muscle(args: &Args) -> Result<(TrueMuscle, Option<Input>)> {
+    let mut input = None;
     let muscle = if let Some(seed) = args.random_muscle {
         TrueMuscle::random(seed)
     } else {
-        let file = MuscleFile::read(args.muscle.as_deref().context("--muscle is missing")?)?;
+        let path = args.muscle.as_deref().context("--muscle is missing")?;
+        let (file, text) = MuscleFile::read_with_text(path)?;
+        let sha256 = sha256_hex(text.as_bytes());
+        input = Some(Input { path: path.display().to_string(), sha256, role: InputRole::Muscle });
         let parameters = Parameters { strand_modulus_pa: file.strand_modulus_pa, ..Parameters::nominal() };
         TrueMuscle::new(file.muscle, file.strand_modulus_pa, parameters)
     };
     let parameters = parameters(args, muscle.parameters().clone())?;
-    Ok(TrueMuscle::new(muscle.muscle().clone(), muscle.contact_modulus_pa(), parameters))
+    Ok((TrueMuscle::new(muscle.muscle().clone(), muscle.contact_modulus_pa(), parameters), input))
 }
 
 /// Parameters of the muscle, as set.

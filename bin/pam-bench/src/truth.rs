@@ -1,9 +1,6 @@
 //! `pam-bench-truth/1`: what stands behind a log of the bench and no logger sees.
 
-use std::path::Path;
-
-use anyhow::Result;
-use pam_core::artifact::{Input, InputRole, Tool, sha256_hex};
+use pam_core::artifact::{Input, Tool};
 use pam_core::muscle::Muscle;
 use pam_virtual_bench::draw::{DrawnParameter, Place};
 use pam_virtual_bench::sensors::{Channel, Clock, Sensors};
@@ -156,24 +153,16 @@ impl SensorEntry {
     }
 }
 
-fn input(muscle_file: &Path) -> Result<Input> {
-    Ok(Input {
-        path: muscle_file.display().to_string(),
-        sha256: sha256_hex(&std::fs::read(muscle_file)?),
-        role: InputRole::Muscle,
-    })
-}
-
 impl Truth {
-    /// The truth behind what `bench` records.
-    pub(crate) fn of(bench: &Bench, protocol: Protocol, args: &Args) -> Result<Self> {
+    /// The truth behind what `bench` records; `muscle_file` where the muscle is from one.
+    pub(crate) fn of(bench: &Bench, protocol: Protocol, args: &Args, muscle_file: Option<Input>) -> Self {
         let muscle = bench.muscle();
         let Sensors { pressure_kpa, length_mm, force_n, clock } = bench.sensors();
         let parameters = Parameters::NAMES.into_iter().zip(muscle.parameters().values());
-        Ok(Self {
+        Self {
             schema: SCHEMA,
             tool: Tool { name: env!("CARGO_PKG_NAME").to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
-            inputs: args.muscle.as_deref().map(input).transpose()?.into_iter().collect(),
+            inputs: muscle_file.into_iter().collect(),
             config: BenchConfig {
                 protocol: protocol.name,
                 protocol_id: protocol.id,
@@ -199,6 +188,6 @@ impl Truth {
                 SensorEntry::of("length_mm", length_mm),
                 SensorEntry::of("force_N", force_n),
             ],
-        })
+        }
     }
 }

@@ -7,6 +7,7 @@ use pam_cli::{ReadArgs, RunArgs};
 use pam_core::artifact::model::{BladderLaw, FrictionLaw, Loss};
 use pam_core::direction::Standstill;
 use pam_core::force::{Form, Parameter};
+use pam_core::spelling::number;
 
 /// Identify a force model of a pneumatic muscle from bench recordings.
 ///
@@ -21,8 +22,8 @@ use pam_core::force::{Form, Parameter};
                   fit.svg\n\n\
                   Example: a commented muscle file to fill in\n  \
                   pam-identify --example --out muscle.toml\n\n\
-                  Exit codes: 0 done and accepted; 1 done and rejected (did not converge, or above --max-rmse-n); 2 \
-                  input or usage."
+                  Exit codes: 0 done and accepted; 1 done and rejected (did not converge, above --max-rmse-n, or \
+                  parameters that no muscle has, unless with --accept-implausible); 2 input or usage."
 )]
 pub(crate) struct Args {
     /// Recordings to fit; - is standard input.
@@ -46,7 +47,7 @@ pub(crate) struct Args {
     pub(crate) figure: Option<PathBuf>,
 
     /// Finish with exit code 1 where the RMSE, on the held-out recordings if there are any, is above X newton.
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", value_parser = pam_cli::positive, allow_negative_numbers = true)]
     pub(crate) max_rmse_n: Option<f64>,
 
     /// How eq. 11 is written: corrected, or with the paper's misprints.
@@ -93,17 +94,17 @@ pub(crate) struct Args {
     pub(crate) standstill: Option<Standstill>,
 
     /// C01/C10 that their fitted sum is shared by.
-    #[arg(long, value_name = "RATIO", default_value_t = pam_identification::search_space::LATEX_RATIO)]
+    #[arg(long, allow_negative_numbers = true, value_name = "RATIO", default_value_t = pam_identification::search_space::LATEX_RATIO)]
     pub(crate) bladder_ratio: f64,
 
     /// By how many millimeters the length turns back before the direction of friction flips; by default five
     /// times the noise of the length channel.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, allow_negative_numbers = true, value_name = "MM")]
     pub(crate) length_play_mm: Option<f64>,
 
     /// By how many kPa the pressure turns back, while the length stands still, before the direction of friction
     /// flips; by default five times the noise of the pressure channel.
-    #[arg(long, value_name = "KPA")]
+    #[arg(long, allow_negative_numbers = true, value_name = "KPA")]
     pub(crate) pressure_play_kpa: Option<f64>,
 
     /// Particles of each swarm.
@@ -118,7 +119,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) starts: u32,
 
-    /// Go on where ranges or correlations say that an instrument or the muscle file is wrong.
+    /// Go on where ranges or correlations say that an instrument or the muscle file is wrong, and accept a model with
+    /// parameters that no muscle has; the model says so.
     #[arg(long)]
     pub(crate) accept_implausible: bool,
 
@@ -131,6 +133,31 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     pub(crate) run: RunArgs,
+}
+
+impl Args {
+    /// Refuses --fix and --free that repeat or contradict one another.
+    pub(crate) fn check_parameters(&self) -> anyhow::Result<()> {
+        for (index, (parameter, value)) in self.fix.iter().enumerate() {
+            let name = parameter.artifact_name();
+            if let Some((_, other)) = self.fix[..index].iter().find(|(other, _)| other == parameter) {
+                let [first, second] = [other, value].map(|value| number(parameter.from_artifact(*value)));
+                anyhow::bail!("--fix holds {name} twice, at {first} and at {second}; leave one of them out");
+            }
+            anyhow::ensure!(
+                !self.free.contains(parameter),
+                "--fix holds {name} and --free fits it; leave one of them out"
+            );
+        }
+        for (index, parameter) in self.free.iter().enumerate() {
+            let name = parameter.artifact_name();
+            anyhow::ensure!(
+                !self.free[..index].contains(parameter),
+                "--free names {name} twice; leave one of them out"
+            );
+        }
+        Ok(())
+    }
 }
 
 /// How eq. 11 is written.
@@ -230,6 +257,17 @@ fn freed(text: &str) -> Result<Parameter, String> {
     }
 }
 
+/// Between which values a parameter can be held, in the unit of an artifact: wide enough for every experiment in thought,
+/// and narrow enough for forces that are numbers.
+fn sensible(parameter: Parameter) -> (f64, f64) {
+    match parameter {
+        Parameter::K1 | Parameter::K2 | Parameter::RubberFriction => (-1e3, 1e3),
+        Parameter::K3 | Parameter::StrandFriction => (-1e6, 1e6),
+        Parameter::C10 | Parameter::C01 => (-1e12, 1e12),
+        Parameter::StrandCompliance => (1e6, 1e18),
+    }
+}
+
 fn fixed(text: &str) -> Result<(Parameter, f64), String> {
     let names = || Parameter::ALL.map(Parameter::artifact_name);
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, as in k3=0")?;
@@ -241,9 +279,9 @@ fn fixed(text: &str) -> Result<(Parameter, f64), String> {
             format!("no parameter is called \"{name}\"{near}; expected one of {}", names().join(", "))
         })?;
     let value: f64 = value.trim().parse().map_err(|_| format!("\"{value}\" is no number"))?;
-    let positive = parameter != Parameter::StrandCompliance || value > 0.0;
-    if !value.is_finite() || !positive {
-        return Err(format!("{name} cannot be {value}"));
+    let (lowest, highest) = sensible(parameter);
+    if !(lowest..=highest).contains(&value) {
+        return Err(format!("{name} cannot be {}; give {lowest:e} to {highest:e}", number(value)));
     }
     Ok((parameter, parameter.from_artifact(value)))
 }

@@ -3,14 +3,16 @@
 use std::path::Path;
 
 use anyhow::{Context as _, ensure};
-use pam_cli::{Console, Output, Verdict, pretty_json, publish, read_recordings, write_example};
+use pam_cli::{Console, Output, Verdict, publish, read_recordings, write_example};
 use pam_core::artifact::model::Assumed;
 use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
 use pam_core::recording::Recording;
+use pam_identification::faults::{spikes, twice, zero};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
+use pam_identification::report::implausible;
 
 use crate::args::{Args, BladderArg, FormArg, FrictionArg};
 use crate::{figure, tables};
@@ -25,15 +27,20 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         return Ok(Verdict::Accepted);
     }
     let muscle_path = args.muscle.as_deref().context("--muscle is missing")?;
-    if let Some(limit) = args.max_rmse_n {
-        ensure!(limit > 0.0, "--max-rmse-n {limit} is not positive");
-    }
     for (name, value) in [("--length-play-mm", args.length_play_mm), ("--pressure-play-kpa", args.pressure_play_kpa)] {
         if let Some(value) = value {
-            ensure!(value >= 0.0 && value.is_finite(), "{name} {value} is negative");
+            ensure!(
+                value >= 0.0 && value.is_finite(),
+                "{name} {value} is no length or pressure to turn back by; give 0 or more"
+            );
         }
     }
-    ensure!(args.bladder_ratio >= 0.0 && args.bladder_ratio.is_finite(), "--bladder-ratio is negative");
+    ensure!(
+        args.bladder_ratio >= 0.0 && args.bladder_ratio.is_finite(),
+        "--bladder-ratio {} is no ratio of moduli; give 0 or more",
+        args.bladder_ratio
+    );
+    args.check_parameters()?;
     let from_stdin = args.logs.iter().chain(&args.holdout).filter(|path| path.as_os_str() == "-").count();
     ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
     for held_out in &args.holdout {
@@ -51,10 +58,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let (muscle, muscle_input) = read_muscle(muscle_path)?;
     let estimation = read_recordings(&args.logs, &args.read.options(), &console)?;
     let validation = read_recordings(&args.holdout, &args.read.options(), &console)?;
+    twice::check(&estimation, &validation)?;
     let mut hashes = vec![muscle_input];
     hashes.extend(estimation.iter().map(|recording| Input::recording(recording, InputRole::Estimation)));
     hashes.extend(validation.iter().map(|recording| Input::recording(recording, InputRole::Validation)));
 
+    // What is read once is fitted twice: a pipe is empty after the first time.
+    let for_comparison = (args.compare_forms && !args.run.check).then(|| (estimation.clone(), validation.clone()));
     let checked = check(request(args, args.form.form(), muscle.clone(), estimation, validation))?;
     console.text(tables::gate(checked.gates()));
     if args.run.check {
@@ -66,7 +76,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let found = checked.identify_observed(&|| progress.advance(1))?;
     drop(progress);
     let tool = Tool { name: "pam-identify".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
-    let artifact = found.artifact(tool, hashes, config, args.run.seed);
+    let mut artifact = found.artifact(tool, hashes, config, args.run.seed);
+    for prepared in found.estimation.iter().chain(&found.validation) {
+        artifact.warnings.extend(spikes::warning(&prepared.recording, &prepared.quality)?);
+    }
+    // Instruments are suspected where a fit ends at no muscle; what they explain is searched for then.
+    if implausible(&found).is_some() {
+        artifact.warnings.extend(zero::explain(&found)?);
+    }
 
     console.text(tables::parameters(&artifact));
     console.text(tables::agreement(&artifact));
@@ -75,14 +92,16 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     } else if args.unbounded {
         console.warn("--unbounded: these recordings are too far from any muscle's for weights without bounds");
     }
-    if args.compare_forms {
-        console.text(compare_forms(args, &console, &muscle, &artifact)?);
+    if let Some((estimation, validation)) = for_comparison {
+        let other = if args.form == FormArg::Corrected { Form::AsPrinted } else { Form::Corrected };
+        let request = request(args, other, muscle.clone(), estimation, validation);
+        console.text(compare_forms(request, &console, &artifact)?);
     }
     for warning in &artifact.warnings {
         console.warn(warning);
     }
     write(&console, &found, &artifact, out, figure_out)?;
-    Ok(verdict(args, &console, &artifact))
+    Ok(verdict(args, &console, &found, &artifact))
 }
 
 /// Publishes model and figure together.
@@ -95,7 +114,7 @@ fn write(
 ) -> anyhow::Result<()> {
     let mut outputs = Vec::new();
     if let Some(output) = out {
-        outputs.push((output, pretty_json(artifact)?));
+        outputs.push((output, artifact.json()?));
     }
     if let Some(output) = figure_out {
         outputs.push((output, figure::svg(found, artifact)?.into_bytes()));
@@ -103,7 +122,7 @@ fn write(
     Ok(publish(outputs, console)?)
 }
 
-fn verdict(args: &Args, console: &Console, artifact: &ModelArtifact) -> Verdict {
+fn verdict(args: &Args, console: &Console, found: &Identified, artifact: &ModelArtifact) -> Verdict {
     let judged = artifact.fit.validation.unwrap_or(artifact.fit.estimation);
     if let Some(limit) = args.max_rmse_n.filter(|&limit| judged.rmse_n > limit) {
         console.warn(format!("rejected: RMSE {:.3} N is above --max-rmse-n {limit}", judged.rmse_n));
@@ -111,6 +130,13 @@ fn verdict(args: &Args, console: &Console, artifact: &ModelArtifact) -> Verdict 
     }
     if !artifact.search.converged && !args.no_polish {
         console.warn("rejected: the search did not converge; try more --starts or --iterations");
+        return Verdict::Rejected;
+    }
+    if let Some(reason) = implausible(found).filter(|_| !args.accept_implausible) {
+        console.warn(format!(
+            "rejected: these are not the parameters of a muscle as eq. 11 describes it, {reason}; look for the cause in \
+             instruments and muscle file, or take the model as it is with --accept-implausible"
+        ));
         return Verdict::Rejected;
     }
     Verdict::Accepted
@@ -151,22 +177,9 @@ fn request(
     }
 }
 
-/// Fits the other form of eq. 11 to the same files, for the table alone.
-fn compare_forms(
-    args: &Args,
-    console: &Console,
-    muscle: &MuscleFile,
-    artifact: &ModelArtifact,
-) -> anyhow::Result<String> {
-    ensure!(
-        args.logs.iter().chain(&args.holdout).all(|path| path.as_os_str() != "-"),
-        "--compare-forms reads the recordings twice, and standard input can be read once only; name a file"
-    );
-    let other = if args.form == FormArg::Corrected { Form::AsPrinted } else { Form::Corrected };
-    let quiet = Console::new(true, args.run.format);
-    let estimation = read_recordings(&args.logs, &args.read.options(), &quiet)?;
-    let validation = read_recordings(&args.holdout, &args.read.options(), &quiet)?;
-    let checked = check(request(args, other, muscle.clone(), estimation, validation))?;
+/// Fits the other form of eq. 11 to the same recordings, for the table alone.
+fn compare_forms(request: Request, console: &Console, artifact: &ModelArtifact) -> anyhow::Result<String> {
+    let checked = check(request)?;
     let config = checked.config();
     let tool = artifact.tool.clone();
     let second = checked.identify()?.artifact(tool, artifact.inputs.clone(), config, artifact.seed);
@@ -174,8 +187,7 @@ fn compare_forms(
 }
 
 fn read_muscle(path: &Path) -> anyhow::Result<(MuscleFile, Input)> {
-    let muscle = MuscleFile::read(path)?;
-    // Read anew for the digest alone: a muscle file is a few hundred bytes.
-    let sha256 = sha256_hex(&std::fs::read(path)?);
+    let (muscle, text) = MuscleFile::read_with_text(path)?;
+    let sha256 = sha256_hex(text.as_bytes());
     Ok((muscle, Input { path: path.display().to_string(), sha256, role: InputRole::Muscle }))
 }

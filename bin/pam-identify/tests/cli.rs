@@ -277,7 +277,7 @@ fn every_bad_command_line_gets_one_line_with_the_remedy() {
         ),
         (
             format!("good.csv {TAIL} --fix strand_modulus=0"),
-            "invalid value 'strand_modulus=0' for '--fix <NAME=VALUE>': strand_modulus cannot be 0; see --help",
+            "invalid value 'strand_modulus=0' for '--fix <NAME=VALUE>': strand_modulus cannot be 0; give 1e6 to 1e18; see --help",
         ),
         (
             format!("good.csv {TAIL} --free k1"),
@@ -297,11 +297,11 @@ fn every_bad_command_line_gets_one_line_with_the_remedy() {
         ),
         (
             format!("good.csv {TAIL} --max-rmse-n -1"),
-            "unexpected argument '-1' found; tip: to pass '-1' as a value, use '-- -1'; see --help",
+            "invalid value '-1' for '--max-rmse-n <X>': expected a number above 0; see --help",
         ),
         (
             format!("good.csv {TAIL} --holdut x.csv"),
-            "unexpected argument '--holdut' found; tip: a similar argument exists: '--holdout'; see --help",
+            "unexpected argument '--holdut' found; did you mean --holdout? See --help",
         ),
     ];
     for (arguments, expected) in cases {
@@ -514,4 +514,203 @@ fn a_closed_pipe_ends_the_run_without_a_word() {
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(said, "");
+}
+
+#[test]
+fn a_muscle_file_from_a_pipe_is_read_once_and_hashed_as_it_was_parsed() {
+    let bench = Bench::new();
+    let text = std::fs::read(bench.folder.path().join("m.toml")).unwrap();
+    let fifo = bench.folder.path().join("fifo.toml");
+    assert!(Command::new("mkfifo").arg(&fifo).status().unwrap().success());
+    let writer = std::thread::spawn({
+        let text = text.clone();
+        move || std::fs::write(fifo, text).unwrap()
+    });
+    let output = bench.run("good.csv --muscle fifo.toml --out model.json --quiet");
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    writer.join().unwrap();
+    let model: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(bench.folder.path().join("model.json")).unwrap()).unwrap();
+    assert_eq!(model["inputs"][0]["sha256"], pam_core::artifact::sha256_hex(&text).as_str());
+}
+
+#[test]
+fn both_forms_are_compared_on_what_a_pipe_gave_once() {
+    let bench = Bench::new();
+    let log = std::fs::read(bench.folder.path().join("good.csv")).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_pam-identify"))
+        .args(["-", "--muscle", "m.toml", "--out", "model.json", "--compare-forms"])
+        .current_dir(bench.folder.path())
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::io::Write::write_all(&mut child.stdin.take().unwrap(), &log).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("as printed"), "{said}");
+}
+
+#[test]
+fn a_parameter_is_held_once_and_not_fitted_as_well() {
+    let bench = Bench::new();
+    let cases = [
+        ("--fix k3=0 --fix k3=1", "--fix holds k3 twice, at 0 and at 1; leave one of them out"),
+        ("--free c01 --free c01", "--free names c01 twice; leave one of them out"),
+        ("--fix c01=1e5 --free c01", "--fix holds c01 and --free fits it; leave one of them out"),
+    ];
+    for (options, expected) in cases {
+        assert_eq!(bench.refusal(&format!("good.csv {options} {TAIL}")), format!("error: {expected}"));
+    }
+    let said = bench.refusal(&format!("good.csv --fix k1=1e300 {TAIL}"));
+    assert!(said.contains("k1 cannot be 1e300; give -1e3 to 1e3"), "{said}");
+}
+
+#[test]
+fn what_leaves_nothing_to_fit_is_said() {
+    let bench = Bench::new();
+    let all = "--fix k1=0.9 --fix k2=1 --fix k3=0 --fix c10=1e5 --fix c01=1e5 --fix strand_modulus=3e9 --fix \
+               rubber_friction=1e-3 --fix strand_friction=0";
+    let expected = "error: every parameter is held with --fix, and nothing is left to fit; leave one of them out";
+    assert_eq!(bench.refusal(&format!("good.csv {all} {TAIL}")), expected);
+    // Noise of the size of the force says nothing of anything.
+    let noise = |row: usize| 4e4 * ((row * 7919 % 101) as f64 / 50.0 - 1.0);
+    bench.file("noise.csv", reworked(|row, [t, p, l, _]| [t, p, l, noise(row)]));
+    let said = bench.refusal(&format!("noise.csv --accept-implausible {TAIL}"));
+    assert!(said.contains("noise.csv: these recordings can identify none of k1, k2, k3"), "{said}");
+}
+
+#[test]
+fn a_dead_weight_gives_a_model_that_can_be_read() {
+    let bench = Bench::new();
+    let rows: String =
+        reworked(|_, row| row).lines().skip(1).map(|line| format!("{}\n", line.rsplit_once(',').unwrap().0)).collect();
+    bench.file("weight.csv", format!("time_s,pressure_kPa,length_mm\n{rows}"));
+    let output = bench.run(&format!("weight.csv --fixed force_N=100 --accept-implausible {TAIL}"));
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&output.stderr));
+    let (model, _) = pam_core::artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
+    assert_eq!(model.fit.estimation.r2, 0.0);
+}
+
+#[test]
+fn a_model_that_no_muscle_has_is_rejected_unless_it_is_asked_for() {
+    let bench = Bench::new();
+    // A load cell that shows 60 N without a muscle.
+    bench.file("tare.csv", reworked(|_, [t, p, l, f]| [t, p, l, f + 60.0]));
+    let output = bench.run(&format!("tare.csv {TAIL}"));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("rejected: these are not the parameters of a muscle") && said.contains("k3 = "), "{said}");
+    let config = |options: &str, code: i32| {
+        let output = bench.run(&format!("{options} {TAIL} --quiet"));
+        assert_eq!(output.status.code(), Some(code), "{options}");
+        let text = std::fs::read(bench.folder.path().join("model.json")).unwrap();
+        serde_json::from_slice::<serde_json::Value>(&text).unwrap()["config"].clone()
+    };
+    assert_eq!(config("tare.csv --accept-implausible", 0)["accept_implausible"], true);
+    assert!(config("good.csv", 0).get("accept_implausible").is_none());
+}
+
+#[test]
+fn strands_without_stretch_are_at_the_upper_end_and_those_of_aramid_are_plausible() {
+    let bench = Bench::new();
+    let output = bench.run(&format!("good.csv {TAIL} --accept-implausible --fix k1=0.5"));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(!said.contains("lower end of its range (1000"), "{said}");
+}
+
+#[test]
+fn an_absolute_gauge_and_a_zero_that_is_off_are_named_beside_the_physics_that_does_the_same() {
+    let bench = Bench::new();
+    for (shift_kpa, words) in
+        [(101.3, "the pressure is absolute"), (40.0, "the zero of the gauge is too high"), (-20.0, "too low")]
+    {
+        bench.file("shifted.csv", reworked(|_, [t, p, l, f]| [t, p + shift_kpa, l, f]));
+        let output = bench.run(&format!("shifted.csv {TAIL}"));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains(words), "{shift_kpa}: {said}");
+        assert_eq!(said.contains("threshold pressure"), shift_kpa > 0.0, "{said}");
+    }
+}
+
+#[test]
+fn a_spike_is_located_and_does_not_count_and_one_beyond_everything_is_refused() {
+    let bench = Bench::new();
+    let with_spike = |by_n: f64| reworked(move |row, [t, p, l, f]| [t, p, l, if row == 4000 { f + by_n } else { f }]);
+    bench.file("high.csv", with_spike(5000.0));
+    let said = bench.refusal(&format!("high.csv {TAIL}"));
+    assert!(
+        said.contains("high.csv: force leaps from its neighbors and back: 6118.720 N at 40.000 s")
+            && said.contains("(row 4001)"),
+        "{said}"
+    );
+    let rmse = |log: &str| {
+        let output = bench.run(&format!("{log} {TAIL}"));
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let (model, _) = pam_core::artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
+        (model.fit.estimation, model.warnings)
+    };
+    let (clean, _) = rmse("good.csv");
+    bench.file("low.csv", with_spike(300.0));
+    let (spiked, warnings) = rmse("low.csv");
+    assert!((spiked.rmse_n - clean.rmse_n).abs() < 0.01, "{} {}", spiked.rmse_n, clean.rmse_n);
+    assert_eq!(spiked.n_unsettled, clean.n_unsettled + 1);
+    assert!(
+        warnings.iter().any(|words| words.contains("low.csv: a sample leaps") && words.contains("(row 4001)")),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_force_that_freezes_half_way_is_refused_with_the_time() {
+    let bench = Bench::new();
+    let at = std::cell::Cell::new(0.0);
+    let text = reworked(|row, [t, p, l, f]| {
+        if row <= 4700 {
+            at.set(f);
+        }
+        [t, p, l, at.get()]
+    });
+    bench.file("frozen.csv", text);
+    let said = bench.refusal(&format!("frozen.csv {TAIL}"));
+    assert!(said.contains("frozen.csv: force stands at ") && said.contains("it froze"), "{said}");
+}
+
+#[test]
+fn a_unit_under_the_name_of_another_is_named() {
+    let bench = Bench::new();
+    for (pressure, force, words) in [
+        (1.0 / 6.895, 1.0, "psi under a header that says kPa is a factor of 6.895"),
+        (1.0, 1.0 / 4.448, "lbf under a header that says N is a factor of 4.448"),
+        (1.0, 1.0 / 9.807, "kgf under a header that says N is a factor of 9.807"),
+    ] {
+        bench.file("unit.csv", reworked(|_, [t, p, l, f]| [t, pressure * p, l, force * f]));
+        let said = bench.refusal(&format!("unit.csv {TAIL}"));
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+#[test]
+fn the_same_recording_twice_is_known_by_its_samples() {
+    let bench = Bench::new();
+    let good = bench.folder.path().join("good.csv");
+    std::fs::hard_link(&good, bench.folder.path().join("link.csv")).unwrap();
+    let units = reworked(|_, [t, p, l, f]| [t, p / 100.0, l / 25.4, f]);
+    bench.file("units.csv", units.replace("pressure_kPa,length_mm", "pressure_bar,length_in"));
+    let part: Vec<String> = reworked(|_, row| row).lines().take(4000).map(str::to_owned).collect();
+    bench.file("part.csv", part.join("\n"));
+    for name in ["link.csv", "units.csv", "part.csv", "./good.csv"] {
+        let fitted = bench.refusal(&format!("good.csv {name} {TAIL}"));
+        assert!(
+            fitted.contains(&format!("{name}: has the same samples as good.csv, which is fitted as well")),
+            "{fitted}"
+        );
+        let held_out = bench.refusal(&format!("good.csv --holdout {name} {TAIL}"));
+        assert!(
+            held_out.contains(&format!("{name}: has the same samples as good.csv, which is fitted;")),
+            "{held_out}"
+        );
+    }
 }

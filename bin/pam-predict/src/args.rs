@@ -30,8 +30,12 @@ pub(crate) struct Args {
     pub(crate) out: Option<PathBuf>,
 
     /// Finish with exit code 1 where the RMSE is above X newton.
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", value_parser = pam_cli::positive, allow_negative_numbers = true)]
     pub(crate) max_rmse_n: Option<f64>,
+
+    /// Go on where ranges or correlations say that an instrument is wrong, or that the recording is of another muscle.
+    #[arg(long)]
+    pub(crate) accept_implausible: bool,
 
     #[command(flatten)]
     pub(crate) read: ReadArgs,

@@ -5,8 +5,9 @@ use pam_cli::{Console, Output, Verdict};
 use pam_core::artifact::ModelArtifact;
 use pam_core::effects::{AugmentedModel, Kind};
 use pam_core::recording::ReadOptions;
-use pam_identification::evaluate::evaluate_augmented;
-use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare};
+use pam_identification::evaluate::{NoForceAt, evaluate_augmented, without_force};
+use pam_identification::faults::spikes;
+use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare, prepare_plausible};
 use pam_identification::prepare::Prepared;
 
 use crate::args::Args;
@@ -29,26 +30,45 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         "{}: no force was recorded, so --max-rmse-n has nothing to judge",
         recording.path
     );
-    let prepared = prepare(recording, &artifact)?;
+    let prepared =
+        if args.accept_implausible { prepare(recording, &artifact)? } else { prepare_plausible(recording, &artifact)? };
+    if let Some(words) = spikes::warning(&prepared.recording, &prepared.quality)? {
+        console.warn(words);
+    }
     for words in outside(&prepared, &artifact.domain) {
         console.warn(words);
     }
     let model = of_any_recording(&artifact, &console);
+    // Before anything is written: a model that has no force for what was recorded leaves no file.
+    let has_force = prepared.recording.samples.has_force();
+    let evaluation = if has_force {
+        Some(evaluate_augmented(std::slice::from_ref(&prepared), &model, artifact.direction)?)
+    } else {
+        None
+    };
     if let Some(mut out) = out {
         let path = out.path().display().to_string();
         // Only effects remember, and only with them the forces are computed beforehand.
         let augmented_n =
             if model.is_plain() { None } else { Some(augmented_forces_n(&prepared, &model, artifact.direction)?) };
-        write(&mut out, &prepared, &model, augmented_n.as_deref()).with_context(|| format!("cannot write {path}"))?;
+        let missing = write(&mut out, &prepared, &model, augmented_n.as_deref())
+            .with_context(|| format!("cannot write {path}"))?;
+        if let Some(at) = missing.first {
+            let n_rows = prepared.recording.samples.n_rows();
+            let said = without_force(prepared.recording.path.clone(), missing.n, n_rows, at, model.base());
+            // Where a force was recorded, those that count have been judged.
+            ensure!(has_force, said);
+            console.warn(format!(
+                "{}: the modelled force is no number in {} samples that are not counted, first at {:.3} s",
+                prepared.recording.path, missing.n, at.time_s
+            ));
+        }
         out.finish()?;
         if path != "-" {
             console.note(format!("wrote {path}"));
         }
     }
-    if !prepared.recording.samples.has_force() {
-        return Ok(Verdict::Accepted);
-    }
-    let evaluation = evaluate_augmented(std::slice::from_ref(&prepared), &model, artifact.direction)?;
+    let Some(evaluation) = evaluation else { return Ok(Verdict::Accepted) };
     let statistics = evaluation.each[0];
     console.note(format!(
         "RMSE {:.3} N, largest {:.1} N, fit {:.2} % over {} samples ({} at reversals or beyond a sensor's range left out)",
@@ -73,6 +93,13 @@ fn of_any_recording(artifact: &ModelArtifact, console: &Console) -> AugmentedMod
     model.without_events()
 }
 
+/// Rows for which the model has no force.
+#[derive(Debug, Clone, Copy, Default)]
+struct Missing {
+    n: usize,
+    first: Option<NoForceAt>,
+}
+
 /// Decimals are those of a good sensor: 1 µs, 0.1 Pa, 0.1 µm, 0.1 mN.
 ///
 /// `augmented_n` are the forces of all rows where the model has effects.
@@ -81,7 +108,8 @@ fn write(
     prepared: &Prepared,
     model: &AugmentedModel,
     augmented_n: Option<&[f64]>,
-) -> std::io::Result<()> {
+) -> std::io::Result<Missing> {
+    let mut missing = Missing::default();
     let samples = &prepared.recording.samples;
     let (has_force, has_temperature) = (samples.has_force(), samples.has_temperature());
     let mut table = csv::Writer::from_writer(out);
@@ -105,6 +133,14 @@ fn write(
             None => forces_n(prepared, model.base(), &chunk),
         };
         for (row, &model_n) in model_n.iter().enumerate() {
+            if !model_n.is_finite() {
+                missing.n += 1;
+                missing.first.get_or_insert_with(|| NoForceAt {
+                    time_s: chunk.time_s()[row],
+                    pressure_pa: chunk.pressure_pa()[row],
+                    length_m: chunk.length_m()[row],
+                });
+            }
             record.clear();
             let mut field = |value: f64, decimals: usize| {
                 record.push_field(format!("{value:.decimals$}").as_bytes());
@@ -125,7 +161,8 @@ fn write(
             table.write_byte_record(&record).map_err(io_error)?;
         }
     }
-    table.flush()
+    table.flush()?;
+    Ok(missing)
 }
 
 /// The writer's own error, which knows the file and whether its reader has gone.

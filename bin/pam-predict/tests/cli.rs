@@ -271,3 +271,54 @@ fn every_bad_input_gets_one_line_with_the_remedy() {
         assert_eq!(bench.refusal(arguments), format!("error: {expected}"), "{arguments}");
     }
 }
+
+/// The shipped recording with every row changed: time s, pressure kPa, length mm, force N in and out.
+fn reworked(header: &str, change: impl Fn(usize, [f64; 4]) -> [f64; 4]) -> String {
+    let log = std::fs::read_to_string(root().join("datasets/bench-nominal/multisine.csv")).unwrap();
+    let mut text = format!("{header}\n");
+    for (index, line) in log.lines().skip(1).enumerate() {
+        let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
+        let [t, p, l, f] = change(index, [fields[0], fields[1], fields[2], fields[3]]);
+        text.push_str(&format!("{t},{p},{l},{f}\n"));
+    }
+    text
+}
+
+const HEADER: &str = "time_s,pressure_kPa,length_mm,force_N";
+
+#[test]
+fn a_recording_in_other_units_is_refused_and_none_of_its_samples_is_counted_as_agreement() {
+    let bench = Bench::new();
+    bench.file("pascal.csv", &reworked(HEADER, |_, [t, p, l, f]| [t, 1e3 * p, l, f]));
+    bench.file("meters.csv", &reworked("time_s,pressure_kPa,length_m,force_N", |_, row| row));
+    for (log, channel) in [("pascal.csv", "pressure"), ("meters.csv", "length")] {
+        let said = bench.refusal(&format!("{log} --model model.json --out out.csv"));
+        assert!(said.contains(&format!("{log}: {channel} reaches")), "{said}");
+    }
+    let said = bench.refusal("meters.csv --model model.json --out out.csv --accept-implausible");
+    assert!(said.contains("meters.csv: the modelled force is no number in"), "{said}");
+    assert!(said.contains("first at") && said.contains("are straight there"), "{said}");
+}
+
+#[test]
+fn a_length_beyond_the_strands_is_located_among_samples_that_count() {
+    let bench = Bench::new();
+    // The strands are 294.6 mm long.
+    let text = reworked(HEADER, |row, [t, p, l, f]| [t, p, if row >= 5000 { 295.0 + 1e-3 * row as f64 } else { l }, f]);
+    bench.file("long.csv", &text);
+    let said = bench.refusal("long.csv --model model.json --out out.csv --accept-implausible");
+    assert!(said.contains("300.") && said.contains("mm)") && said.contains("first at 50.000 s"), "{said}");
+    // Without a force every row counts.
+    bench.file("free.csv", "time_s,pressure_kPa,length_mm\n0,100,260\n0.01,100,295\n0.02,100,260\n");
+    let said = bench.refusal("free.csv --model model.json --out out.csv --accept-implausible");
+    assert!(said.contains("no number in 1 of 3"), "{said}");
+}
+
+#[test]
+fn a_limit_is_a_number_above_zero() {
+    let bench = Bench::new();
+    for limit in ["nan", "-1", "0", "inf", "two"] {
+        let said = bench.refusal(&format!("log.csv --model model.json --out out.csv --max-rmse-n {limit}"));
+        assert!(said.contains("expected a number above 0") && !said.contains("-- -1"), "{said}");
+    }
+}

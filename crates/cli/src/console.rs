@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
+use crate::exit::visible;
 use crate::message::{Drawn, Format, Message, Said, Step};
 
 /// Work shorter than this shows no bar, and two lines of progress are this far apart.
@@ -42,7 +43,7 @@ impl Console {
 
     /// Text of several lines, as it is: a table, for instance.
     pub fn text(&self, text: impl AsRef<str>) {
-        let message = text.as_ref().trim_end_matches('\n').to_owned();
+        let message = visible(text.as_ref().trim_end_matches('\n'));
         self.message(|| Message::Table(Drawn { message }));
     }
 
@@ -51,7 +52,7 @@ impl Console {
     pub fn progress(&self, label: impl Into<String>, steps: u64) -> Progress {
         let bar = ProgressBar::hidden();
         bar.set_length(steps);
-        bar.set_message(label.into());
+        bar.set_message(visible(&label.into()));
         let shows = match self.format {
             _ if self.quiet => Shows::Nothing,
             Format::Json => Shows::Lines(Mutex::new(SHOW_AFTER)),

@@ -55,6 +55,9 @@ fn one_line(error: &anyhow::Error) -> String {
         let text = cause.to_string();
         if line.is_empty() {
             line = text;
+        } else if text.starts_with(&line) {
+            // A reason that says what could not be done, as its context does.
+            line = text;
         } else if !line.ends_with(&text) {
             line.push_str(": ");
             line.push_str(&text);
@@ -66,6 +69,23 @@ fn one_line(error: &anyhow::Error) -> String {
 /// `text` on one line: line breaks and the blanks around them become one blank.
 pub(crate) fn flatten(text: &str) -> String {
     text.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// `text` with characters that would steer a terminal made visible: names of files and words of artifacts are written by
+/// others.
+pub(crate) fn visible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for character in text.chars() {
+        let steers = character.is_control() && character != '\n' && character != '\t';
+        // Marks that turn the direction of writing hide what stands after them.
+        let turns = matches!(character, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        if steers || turns {
+            shown.extend(character.escape_unicode());
+        } else {
+            shown.push(character);
+        }
+    }
+    shown
 }
 
 #[cfg(test)]
@@ -84,6 +104,13 @@ mod tests {
     fn a_reason_that_is_already_quoted_is_not_repeated() {
         let error = anyhow::anyhow!("no such thing").context("cannot open x: no such thing");
         assert_eq!(one_line(&error), "cannot open x: no such thing");
+        let error = anyhow::anyhow!("cannot write x: no space").context("cannot write x");
+        assert_eq!(one_line(&error), "cannot write x: no space");
+    }
+
+    #[test]
+    fn nothing_that_is_said_steers_a_terminal() {
+        assert_eq!(visible("a\u{1b}[31mb\r\u{7}\u{202e}c\tα\n"), "a\\u{1b}[31mb\\u{d}\\u{7}\\u{202e}c\tα\n");
     }
 
     #[test]

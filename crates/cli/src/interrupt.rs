@@ -28,7 +28,7 @@ pub(crate) fn live() -> MutexGuard<'static, Live> {
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes Ctrl-C, termination and hang-up delete live temporaries and exit with code 130. Calling it again
+/// Makes Ctrl-C, Ctrl-\\, termination and hang-up delete live temporaries and exit with code 130. Calling it again
 /// does nothing.
 ///
 /// Under `nohup` nothing is installed: the handler could not tell a hang-up from the other two, and would
@@ -40,12 +40,40 @@ pub fn start() {
             return;
         }
         // Without a handler the system ends the program just as well; only a temporary may stay behind.
-        let _ = ctrlc::set_handler(|| {
-            let live = live();
-            live.delete_temporaries();
-            // The lock is never given back: the main thread must not create another one meanwhile.
-            std::process::exit(130);
-        });
+        // First, so that the thread that ctrlc starts inherits what is kept from it.
+        #[cfg(unix)]
+        end_on_quit();
+        let _ = ctrlc::set_handler(end);
+    });
+}
+
+/// Ends the program without a trace.
+fn end() {
+    let live = live();
+    live.delete_temporaries();
+    // The lock is never given back: the main thread must not create another one meanwhile.
+    std::process::exit(130);
+}
+
+/// The same for Ctrl-\\; and a file that grows beyond what the system allows becomes an error of the write instead of a
+/// signal that ends the program on the spot.
+///
+/// Both signals are kept from every thread (those to come inherit it), and one thread waits for the first.
+#[cfg(unix)]
+fn end_on_quit() {
+    use nix::sys::signal::{SigSet, Signal};
+    let mut kept = SigSet::empty();
+    kept.add(Signal::SIGQUIT);
+    kept.add(Signal::SIGXFSZ);
+    if kept.thread_block().is_err() {
+        return;
+    }
+    let mut awaited = SigSet::empty();
+    awaited.add(Signal::SIGQUIT);
+    let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
+        if awaited.wait().is_ok() {
+            end();
+        }
     });
 }
 

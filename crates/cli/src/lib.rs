@@ -50,4 +50,4 @@ pub use pam_core::spelling::nearest;
 pub use program::{main, main_with_schema};
 pub use read_args::ReadArgs;
 pub use reading::{read_recording, read_recordings};
-pub use run_args::RunArgs;
+pub use run_args::{RunArgs, number, positive};

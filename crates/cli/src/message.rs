@@ -5,7 +5,7 @@ use std::io::Write as _;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::exit::flatten;
+use crate::exit::{flatten, visible};
 
 /// How standard error is written.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -83,7 +83,7 @@ pub struct Step {
 impl Said {
     /// `text` on one line, with the place that it begins with.
     pub(crate) fn new(text: &str) -> Self {
-        let message = flatten(text);
+        let message = visible(&flatten(text));
         let (path, line, column) = place(&message, &arguments());
         Self { message, path, line, column }
     }
@@ -114,14 +114,14 @@ fn place(message: &str, arguments: &[String]) -> (Option<String>, Option<u64>, O
     let openings = ["cannot read muscle file ", "cannot read ", "cannot write "];
     let rest = openings.iter().find_map(|opening| message.strip_prefix(opening)).unwrap_or(message);
     let named = arguments.iter().map(|word| match word.split_once('=') {
-        Some((option, value)) if option.starts_with("--") => (value, value),
-        _ => (word.as_str(), word.as_str()),
+        Some((option, value)) if option.starts_with("--") => (visible(value), value),
+        _ => (visible(word), word.as_str()),
     });
     // As messages show it, and as it is given.
     let found = named
-        .chain([("standard input", "-"), ("standard output", "-")])
+        .chain([("standard input".to_owned(), "-"), ("standard output".to_owned(), "-")])
         .filter(|(shown, _)| !shown.is_empty() && !shown.starts_with("--"))
-        .filter(|(shown, _)| rest.strip_prefix(shown).is_some_and(|rest| rest.starts_with(':')));
+        .filter(|(shown, _)| rest.strip_prefix(shown.as_str()).is_some_and(|rest| rest.starts_with(':')));
     let Some((shown, path)) = found.max_by_key(|(shown, _)| shown.len()) else { return (None, None, None) };
     let mut fields = rest[shown.len() + 1..].splitn(3, ':');
     let mut number = || fields.next().and_then(|field| field.parse::<u64>().ok());

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::interrupt::live;
-use crate::target::{Claim, folder_of, follow_links, is_descriptor, is_stdout};
+use crate::target::{Claim, folder_of, follow_links, is_another_picture, is_descriptor, is_stdout};
 use crate::temporary::Temporary;
 use crate::{Console, OutputError};
 
@@ -61,6 +61,9 @@ impl Output {
         if is_stdout(&path) {
             let claim = Claim::new(PathBuf::from("-"), &path)?;
             return Ok(Self { path, sink: Sink::Stdout, claim: Some(claim) });
+        }
+        if is_another_picture(&path) {
+            return Err(OutputError::AnotherPicture { path });
         }
         let fail = |reason| OutputError::from_io(&path, reason);
         let existing = match std::fs::metadata(&path) {

@@ -70,6 +70,16 @@ pub enum OutputError {
         /// Path as given.
         path: PathBuf,
     },
+    /// The name is that of a picture in a format that is not written.
+    #[error(
+        "cannot write {}: figures are SVG; name it {}, and convert it then, for example with rsvg-convert or Inkscape",
+        shown(path),
+        path.with_extension("svg").display()
+    )]
+    AnotherPicture {
+        /// Path as given.
+        path: PathBuf,
+    },
     /// Anything else that the system says.
     #[error("cannot write {}: {reason}", shown(path))]
     Io {

@@ -4,13 +4,13 @@ use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser;
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use schemars::JsonSchema;
 
 use crate::about::{self, Schema};
 use crate::exit::usage_error;
 use crate::message::Format;
-use crate::{OutputError, Verdict, exit_code, interrupt};
+use crate::{OutputError, Verdict, exit_code, interrupt, nearest};
 
 /// A whole `main`: parses the arguments, runs, and turns the result into an exit code.
 ///
@@ -49,7 +49,40 @@ fn program<Args: Parser>(run: impl FnOnce(&Args) -> anyhow::Result<Verdict>, art
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
             printed(error.render().to_string().as_bytes())
         }
-        Err(error) => usage_error(&without_usage(&error.render().to_string()), format),
+        Err(error) => usage_error(&mistake(&error, &command()), format),
+    }
+}
+
+/// What options are called elsewhere.
+const OTHER_NAMES: [(&str, &str); 6] = [
+    ("output", "out"),
+    ("outfile", "out"),
+    ("validation", "holdout"),
+    ("hold-out", "holdout"),
+    ("plot", "figure"),
+    ("jobs", "threads"),
+];
+
+/// The message of a command-line error on one line, with the option that was probably meant.
+fn mistake(error: &clap::Error, command: &clap::Command) -> String {
+    let message = without_usage(&error.render().to_string());
+    let unknown = match error.get(ContextKind::InvalidArg) {
+        Some(ContextValue::String(word)) if error.kind() == ErrorKind::UnknownArgument => word,
+        _ => return message,
+    };
+    let options: Vec<&str> = command.get_arguments().filter_map(|argument| argument.get_long()).collect();
+    let others = OTHER_NAMES.iter().filter(|(_, option)| options.contains(option)).map(|(name, _)| *name);
+    let near = nearest(unknown.trim_start_matches('-'), options.iter().copied().chain(others));
+    let meant = near.map(|near| OTHER_NAMES.iter().find(|(name, _)| *name == near).map_or(near, |(_, option)| *option));
+    match meant {
+        Some(near) if unknown.starts_with("--") => {
+            format!("unexpected argument '{unknown}' found; did you mean --{near}? See --help")
+        }
+        // A value that looks like an option stands there as it is, and nobody wants it after "--".
+        _ => match message.split_once("; tip: ") {
+            Some((message, _)) => format!("{message}; see --help"),
+            None => message,
+        },
     }
 }
 
@@ -76,15 +109,21 @@ mod tests {
     }
 
     fn message(arguments: &[&str]) -> String {
-        without_usage(&Args::try_parse_from(arguments).unwrap_err().render().to_string())
+        mistake(&Args::try_parse_from(arguments).unwrap_err(), &<Args as clap::CommandFactory>::command())
     }
 
     #[test]
     fn a_mistake_on_the_command_line_is_one_line_with_the_way_out() {
         assert_eq!(
             message(&["pam-x", "--sed", "1"]),
-            "unexpected argument '--sed' found; tip: a similar argument exists: '--seed'; see --help"
+            "unexpected argument '--sed' found; did you mean --seed? See --help"
         );
+        for word in ["--ouput", "--output", "--oput"] {
+            let expected = format!("unexpected argument '{word}' found; did you mean --out? See --help");
+            assert_eq!(message(&["pam-x", word, "x"]), expected);
+        }
+        assert_eq!(message(&["pam-x", "--out", "x", "-1"]), "unexpected argument '-1' found; see --help");
+        assert_eq!(message(&["pam-x", "--gearbox"]), "unexpected argument '--gearbox' found; see --help");
         assert_eq!(message(&["pam-x"]), "the following required arguments were not provided: --out <OUT>; see --help");
         assert_eq!(
             message(&["pam-x", "--out", "x", "--seed", "few"]),

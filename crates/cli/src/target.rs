@@ -30,14 +30,27 @@ impl Drop for Claim {
     }
 }
 
-/// A name for standard output.
+/// A name for standard output, dots and doubled slashes in it or not.
 pub(crate) fn is_stdout(path: &Path) -> bool {
-    ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path.as_os_str() == *name)
+    let is = |path: &Path| ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name));
+    // The folder is made plain, and the name in it stays: what it links to is a pipe without a name.
+    let plain = || Some(std::fs::canonicalize(path.parent()?).ok()?.join(path.file_name()?));
+    let own = || {
+        let own = PathBuf::from(format!("/proc/{}/fd/1", std::process::id()));
+        plain().is_some_and(|path| path == own || is(&path))
+    };
+    path.as_os_str() == "-" || is(path) || (path.is_absolute() && path.file_name().is_some() && own())
 }
 
 /// A name for an open descriptor, which may be a regular file that must not be replaced under its owner.
 pub(crate) fn is_descriptor(path: &Path) -> bool {
     path.as_os_str() == "/dev/stderr" || path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd")
+}
+
+/// Endings of pictures that no program here writes.
+pub(crate) fn is_another_picture(path: &Path) -> bool {
+    let known = ["png", "pdf", "jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "eps", "ps", "emf"];
+    path.extension().is_some_and(|ending| known.iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
 /// Folder of `target`, `.` where it has none.
@@ -60,4 +73,31 @@ pub(crate) fn follow_links(path: &Path) -> io::Result<PathBuf> {
         }
     }
     Err(io::Error::other("too many symbolic links"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn standard_output_is_known_under_all_its_names() {
+        let own = format!("/proc/{}/fd/1", std::process::id());
+        let names = [
+            "-",
+            "/dev/stdout",
+            "/dev/./stdout",
+            "//dev//stdout",
+            "/dev/fd/1",
+            "/dev/../dev/fd/./1",
+            "/dev/shm/../stdout",
+            &own,
+        ];
+        for name in names {
+            assert!(is_stdout(Path::new(name)), "{name}");
+        }
+        for name in ["/dev/stderr", "/dev/fd/2", "stdout", "./-", "/", "..", "/dev/null"] {
+            assert!(!is_stdout(Path::new(name)), "{name}");
+        }
+    }
 }

@@ -133,3 +133,12 @@ fn two_outputs_to_one_file_and_an_output_over_an_input_are_refused() {
     assert!(Output::open(&path).unwrap().apart_from(["-", "elsewhere.csv"]).is_ok());
     assert_eq!(fs::read_to_string(&path).unwrap(), "raw");
 }
+
+#[test]
+fn a_picture_in_a_format_that_is_not_written_is_refused_with_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = Output::open(folder.path().join("fit.PNG")).unwrap_err();
+    assert!(matches!(refused, OutputError::AnotherPicture { .. }), "{refused}");
+    assert!(refused.to_string().contains("figures are SVG; name it ") && refused.to_string().contains("fit.svg,"));
+    assert!(names(folder.path()).is_empty());
+}

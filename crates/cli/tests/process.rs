@@ -188,7 +188,7 @@ fn a_full_standard_output_is_one_line_and_code_2() {
 }
 
 fn a_signal_leaves_no_file_and_gives_130() {
-    for signal in ["INT", "TERM"] {
+    for signal in ["INT", "TERM", "HUP", "QUIT"] {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("model.json");
         let mut child: Child = child(&["hang", "--out", out.to_str().unwrap()]).spawn().unwrap();
@@ -201,6 +201,22 @@ fn a_signal_leaves_no_file_and_gives_130() {
         assert_eq!(child.wait().unwrap().code(), Some(130));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only the sign");
     }
+}
+
+fn a_file_beyond_the_limit_of_the_system_is_one_line_and_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("model.json");
+    // The system sends a signal that ends a program which does not expect it.
+    let finished = Command::new("sh")
+        .args(["-c", "ulimit -f 8; exec \"$0\" write --quiet --out \"$1\""])
+        .args([std::env::current_exe().unwrap(), out.clone()])
+        .env("PAM_CLI_TEST_CHILD", "1")
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8(finished.stderr).unwrap();
+    assert_eq!(finished.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("no space left") && stderr.matches("cannot write").count() == 1, "{stderr}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 fn a_panic_leaves_no_file_and_gives_101() {
@@ -223,6 +239,7 @@ fn main() -> ExitCode {
     a_closed_pipe_is_quiet_and_code_2();
     a_full_standard_output_is_one_line_and_code_2();
     a_signal_leaves_no_file_and_gives_130();
+    a_file_beyond_the_limit_of_the_system_is_one_line_and_leaves_nothing();
     a_panic_leaves_no_file_and_gives_101();
     ExitCode::SUCCESS
 }

@@ -31,7 +31,7 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::spelling::{nearest, toml_fault, unreadable};
+use crate::spelling::{nearest, number, toml_fault, unreadable};
 
 /// Dimensions of a muscle, in SI; see the [module](self) for symbols.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -267,7 +267,7 @@ pub enum MuscleError {
         reason: String,
     },
     /// A value that no muscle has.
-    #[error("{}: {key} = {value} is outside {lowest} to {highest}; check the value and its unit", path.display())]
+    #[error("{}: {key} = {} is outside {lowest} to {highest}; check the value and its unit", path.display(), number(*value))]
     OutOfRange {
         /// File being read.
         path: PathBuf,
@@ -298,9 +298,17 @@ impl MuscleFile {
     /// # Errors
     /// [`MuscleError`] names the file, and the key or the line, and what to do.
     pub fn read(path: &Path) -> Result<Self, MuscleError> {
+        Self::read_with_text(path).map(|(file, _)| file)
+    }
+
+    /// As [`MuscleFile::read`], with the text that was parsed: a pipe cannot be read again for its digest.
+    ///
+    /// # Errors
+    /// See [`MuscleFile::read`].
+    pub fn read_with_text(path: &Path) -> Result<(Self, String), MuscleError> {
         let text =
             std::fs::read_to_string(path).map_err(|reason| MuscleError::Read { path: path.to_owned(), reason })?;
-        Self::parse(&text, path)
+        Ok((Self::parse(&text, path)?, text))
     }
 
     /// Parses the text of a muscle file; `path` is for messages.

@@ -17,6 +17,16 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     best.map(|(_, candidate)| candidate)
 }
 
+/// A number for a message: as it is written, or with a power of ten where that would fill the line with digits.
+pub fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || !value.is_finite() || (1e-6..1e15).contains(&size) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
 /// Why a file cannot be read, for a message; where it is missing, with the name of the folder that is nearest to its own.
 pub fn unreadable(path: &Path, reason: &io::Error) -> String {
     if reason.kind() != io::ErrorKind::NotFound {
@@ -75,6 +85,12 @@ mod tests {
         assert_eq!(nearest("Stibreck", effects), Some("stribeck"));
         assert_eq!(nearest("viscous-dampning", effects), Some("viscous-damping"));
         assert_eq!(nearest("gearbox", effects), None);
+    }
+
+    #[test]
+    fn a_number_of_three_hundred_digits_is_written_with_a_power_of_ten() {
+        let said = [-5.0, 0.0, 0.1 + 0.2, 3e9, 1e300, -2e-9].map(number);
+        assert_eq!(said, ["-5", "0", "0.30000000000000004", "3000000000", "1e300", "-2e-9"]);
     }
 
     #[test]

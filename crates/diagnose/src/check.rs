@@ -23,11 +23,7 @@ pub(crate) fn prepare(
     accept_implausible: bool,
 ) -> Result<(Vec<Prepared>, Vec<Prepared>), DiagnoseError> {
     let n_estimation = estimation.len();
-    for held in &holdout {
-        if let Some(other) = estimation.iter().find(|fitted| same(fitted, held)) {
-            return Err(DiagnoseError::Overlap { path: held.path.clone(), other: other.path.clone() });
-        }
-    }
+    faults::twice::check(&estimation, &holdout)?;
     let mut gates = gate(estimation.into_iter().chain(holdout).collect())?;
     for gated in &gates {
         let path = || gated.recording.path.clone();
@@ -47,21 +43,6 @@ pub(crate) fn prepare(
     }
     let holdout = gates.split_off(n_estimation);
     Ok((direct(gates, model.direction, model.form)?, direct(holdout, model.direction, model.form)?))
-}
-
-/// Whether two recordings hold the same samples, whatever they are called.
-fn same(left: &Recording, right: &Recording) -> bool {
-    if left.sha256 == right.sha256 {
-        return true;
-    }
-    if left.samples.n_rows() != right.samples.n_rows() {
-        return false;
-    }
-    let first = |recording: &Recording| {
-        let chunk = recording.samples.chunk(0).ok()?;
-        Some((chunk.pressure_pa().to_vec(), chunk.length_m().to_vec(), chunk.force_n().to_vec()))
-    };
-    first(left).is_some_and(|columns| Some(columns) == first(right))
 }
 
 fn channels(gated: &Gated) -> Result<(), DiagnoseError> {

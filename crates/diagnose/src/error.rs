@@ -21,16 +21,6 @@ pub enum DiagnoseError {
         /// What is missing, in s.
         more_s: f64,
     },
-    /// The same recording on both sides.
-    #[error(
-        "{path}: has the same samples as {other}, which is fitted; a hold-out must be a recording that nothing was fitted to"
-    )]
-    Overlap {
-        /// Held-out recording.
-        path: String,
-        /// Estimation recording.
-        other: String,
-    },
     /// Something about the instruments is wrong before any physics is.
     // A diagnosis knows the muscle from its model, a fit from the muscle file.
     #[error("{}", .0.to_string().replace("muscle file", "model"))]

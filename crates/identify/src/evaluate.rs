@@ -14,11 +14,25 @@ use crate::prepare::Prepared;
 /// Most samples of one recording that a trace keeps.
 const TRACE_SAMPLES: usize = 40_000;
 
+/// Where a model first gave no number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoForceAt {
+    /// Time, in s.
+    pub time_s: f64,
+    /// Gauge pressure, in Pa.
+    pub pressure_pa: f64,
+    /// Length, in m.
+    pub length_m: f64,
+}
+
 /// Sums over samples whose direction is settled.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
     n_samples: usize,
     n_unsettled: usize,
+    /// Samples that would count, had the model a force for them, and the first of them.
+    n_without_force: usize,
+    first_without_force: Option<NoForceAt>,
     residual_squares: f64,
     unsettled_squares: f64,
     largest: f64,
@@ -28,9 +42,12 @@ struct Tally {
 }
 
 impl Tally {
-    fn push(&mut self, force_n: f64, model_n: f64) {
+    fn push(&mut self, force_n: f64, model_n: f64, at: impl FnOnce() -> NoForceAt) {
         let residual_n = force_n - model_n;
-        if !residual_n.is_finite() {
+        // Its square is what is summed.
+        if !(residual_n * residual_n).is_finite() {
+            self.n_without_force += 1;
+            self.first_without_force.get_or_insert_with(at);
             return;
         }
         if self.n_samples == 0 {
@@ -47,7 +64,7 @@ impl Tally {
 
     fn push_unsettled(&mut self, force_n: f64, model_n: f64) {
         let residual_n = force_n - model_n;
-        if residual_n.is_finite() {
+        if (residual_n * residual_n).is_finite() {
             self.n_unsettled += 1;
             self.unsettled_squares += residual_n * residual_n;
         }
@@ -56,6 +73,8 @@ impl Tally {
     fn merge(&mut self, other: &Self) {
         self.n_unsettled += other.n_unsettled;
         self.unsettled_squares += other.unsettled_squares;
+        self.n_without_force += other.n_without_force;
+        self.first_without_force = self.first_without_force.or(other.first_without_force);
         if other.n_samples == 0 {
             return;
         }
@@ -71,10 +90,25 @@ impl Tally {
         self.largest = self.largest.max(other.largest);
     }
 
+    /// Refuses statistics over nothing, or over what is left after a model gave no force.
+    fn judge(&self, prepared: &Prepared, model: &ForceModel) -> Result<(), IdentifyError> {
+        let path = || prepared.recording.path.clone();
+        if let Some(at) = self.first_without_force {
+            let n_counted = self.n_samples + self.n_without_force;
+            return Err(without_force(path(), self.n_without_force, n_counted, at, model));
+        }
+        if self.n_samples == 0 {
+            return Err(IdentifyError::NothingCounted { path: path(), n_rows: prepared.recording.samples.n_rows() });
+        }
+        Ok(())
+    }
+
     fn statistics(&self) -> FitStatistics {
         let n = self.n_samples.max(1) as f64;
         let spread = (self.force_squares - self.forces * self.forces / n).max(f64::MIN_POSITIVE);
         let share = self.residual_squares / spread;
+        // A force that never varies, as under a dead weight, leaves nothing of itself to explain.
+        let share = if share.is_finite() { share } else { 1.0 };
         FitStatistics {
             rmse_n: (self.residual_squares / n).sqrt(),
             rmse_all_n: ((self.residual_squares + self.unsettled_squares)
@@ -120,11 +154,14 @@ pub struct Evaluation {
 /// Compares `model` with `recordings`.
 ///
 /// # Errors
-/// [`IdentifyError::Samples`] where samples cannot be read back.
+/// [`IdentifyError::WithoutForce`] where the model has no force for a sample that counts,
+/// [`IdentifyError::NothingCounted`] where none does, [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn evaluate(recordings: &[Prepared], model: &ForceModel) -> Result<Evaluation, IdentifyError> {
     let tally = |prepared: &Prepared| {
-        tally(prepared, model)
-            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })
+        let tally = tally(prepared, model)
+            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+        tally.judge(prepared, model)?;
+        Ok(tally)
     };
     let tallies: Result<Vec<Tally>, IdentifyError> = recordings.iter().map(tally).collect();
     Ok(Evaluation::of(&tallies?))
@@ -134,7 +171,7 @@ pub fn evaluate(recordings: &[Prepared], model: &ForceModel) -> Result<Evaluatio
 /// direction. A model without effects costs what [`evaluate`] costs.
 ///
 /// # Errors
-/// [`IdentifyError::Samples`] where samples cannot be read back.
+/// As [`evaluate`].
 pub fn evaluate_augmented(
     recordings: &[Prepared],
     model: &AugmentedModel,
@@ -150,16 +187,45 @@ pub fn evaluate_augmented(
             let mut tally = Tally::default();
             walk_augmented(prepared, model, thresholds, index, &mut |instant, model_n| {
                 if instant.settled {
-                    tally.push(instant.force_n, model_n);
+                    let moment = &instant.moment;
+                    tally.push(instant.force_n, model_n, || NoForceAt {
+                        time_s: moment.time_s,
+                        pressure_pa: moment.pressure_pa,
+                        length_m: moment.length_m,
+                    });
                 } else {
                     tally.push_unsettled(instant.force_n, model_n);
                 }
             })
             .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+            tally.judge(prepared, model.base())?;
             Ok(tally)
         })
         .collect();
     Ok(Evaluation::of(&tallies?))
+}
+
+/// What to say of a model that has no force for `n` of `n_counted` samples, the first of them `at`.
+pub fn without_force(path: String, n: usize, n_counted: usize, at: NoForceAt, model: &ForceModel) -> IdentifyError {
+    let strand_m = model.muscle().strand_length_m();
+    let reason = if at.length_m >= strand_m {
+        format!(
+            "strands of {:.2} mm are straight there; check the unit of the length, and that recording and model belong \
+             together",
+            strand_m * 1e3
+        )
+    } else {
+        "check the units of the channels, and that recording and model belong together".to_owned()
+    };
+    IdentifyError::WithoutForce {
+        path,
+        n,
+        n_counted,
+        time_s: at.time_s,
+        pressure_kpa: at.pressure_pa * 1e-3,
+        length_mm: at.length_m * 1e3,
+        reason,
+    }
 }
 
 impl Evaluation {
@@ -185,7 +251,11 @@ fn tally(prepared: &Prepared, model: &ForceModel) -> std::io::Result<Tally> {
                 let row = chunk.first_row() + here;
                 let model_n = model.force_n(pressure_pa[here], length_m[here], prepared.direction.sign(row));
                 if prepared.direction.is_settled(row) {
-                    tally.push(force_n[here], model_n);
+                    tally.push(force_n[here], model_n, || NoForceAt {
+                        time_s: chunk.time_s()[here],
+                        pressure_pa: pressure_pa[here],
+                        length_m: length_m[here],
+                    });
                 } else {
                     tally.push_unsettled(force_n[here], model_n);
                 }
@@ -300,4 +370,77 @@ pub fn trace_augmented(
     })
     .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
     Ok(Trace { model_n, ..trace(prepared, model.base())? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use pam_core::force::{BaseParameters, Form};
+    use pam_core::muscle::Muscle;
+    use pam_core::recording::{Recording, Repairs, Samples};
+
+    use crate::prepare::{direct, gate};
+
+    fn model() -> ForceModel {
+        let muscle = Muscle {
+            rest_length_m: 0.267,
+            rest_radius_m: 0.010,
+            braid_angle_rad: 25.0_f64.to_radians(),
+            wall_thickness_m: 0.001,
+            strand_count: 240.0,
+            strand_diameter_m: 0.25e-3,
+        };
+        let parameters = BaseParameters { theta: [0.9, 1.05, 2.0, 118.4e3, 105.7e3, 1.0 / 3e9, 1.2e-3, 0.0] };
+        ForceModel::new(&muscle, 3e9, Form::Corrected, parameters)
+    }
+
+    /// A muscle that shortens evenly; `length_m` of the last row is `last_m`.
+    fn ramp(last_m: f64) -> Prepared {
+        let rows = || (0..200_i32).map(f64::from);
+        let time_s: Vec<f64> = rows().map(|row| 0.01 * row).collect();
+        let mut length_m: Vec<f64> = rows().map(|row| 0.26 - 1e-4 * row).collect();
+        length_m[199] = last_m;
+        let force_n: Vec<f64> = rows().map(|row| 300.0 - row).collect();
+        let samples = Samples::from_columns(&time_s, &[2e5; 200], &length_m, &force_n);
+        let recording = Recording {
+            path: "ramp.csv".to_owned(),
+            sha256: String::new(),
+            samples,
+            segments: std::iter::once(0..200).collect(),
+            repairs: Repairs::default(),
+            ignored_columns: Vec::new(),
+        };
+        let thresholds = Thresholds { length_m: 1e-4, pressure_pa: 1e3 };
+        direct(gate(vec![recording]).unwrap(), thresholds, Form::Corrected).unwrap().remove(0)
+    }
+
+    #[test]
+    fn no_agreement_is_claimed_over_no_samples() {
+        let mut still = ramp(0.24);
+        still.direction.leave_out(0..200);
+        let refused = evaluate(std::slice::from_ref(&still), &model()).unwrap_err();
+        assert!(matches!(refused, IdentifyError::NothingCounted { n_rows: 200, .. }), "{refused}");
+        let augmented = AugmentedModel::from(model());
+        let thresholds = Thresholds { length_m: 1e-4, pressure_pa: 1e3 };
+        assert!(evaluate_augmented(&[still], &augmented, thresholds).is_err());
+    }
+
+    #[test]
+    fn a_sample_without_a_modelled_force_is_counted_and_located() {
+        let model = model();
+        let mut tally = Tally::default();
+        let at = |time_s: f64| NoForceAt { time_s, pressure_pa: 2e5, length_m: 0.3 };
+        tally.push(300.0, 299.0, || at(0.0));
+        tally.push(300.0, f64::NAN, || at(0.1));
+        // Its square is none.
+        tally.push(300.0, 1e200, || at(0.2));
+        match tally.judge(&ramp(0.24), &model).unwrap_err() {
+            IdentifyError::WithoutForce { n: 2, n_counted: 3, time_s, reason, .. } => {
+                assert_eq!(time_s, 0.1);
+                assert!(reason.contains("294.60 mm"), "{reason}");
+            }
+            other => panic!("{other}"),
+        }
+    }
 }

@@ -8,7 +8,9 @@
 use nalgebra::DMatrix;
 use pam_optim::polish::Residuals;
 
+use crate::error::IdentifyError;
 use crate::problem::ForceProblem;
+use crate::search_space::{Free, SearchSpace};
 
 /// Uncertainty that must be gone for a parameter to be fitted, as a share of that before.
 const MUST_LEARN: f64 = 0.5;
@@ -49,4 +51,19 @@ pub fn unidentifiable(problem: &ForceProblem<'_>, center: &[f64], noise_n: f64) 
             None => return held,
         }
     }
+}
+
+/// Refuses a search that has nothing to move; `path` is the first recording.
+///
+/// # Errors
+/// [`IdentifyError::NothingIdentifiable`], [`IdentifyError::EverythingFixed`].
+pub fn something_to_fit(space: &SearchSpace, unidentifiable: &[Free], path: &str) -> Result<(), IdentifyError> {
+    if !space.free.is_empty() {
+        return Ok(());
+    }
+    if unidentifiable.is_empty() {
+        return Err(IdentifyError::EverythingFixed);
+    }
+    let names: Vec<&str> = unidentifiable.iter().map(|free| free.name()).collect();
+    Err(IdentifyError::NothingIdentifiable { path: path.to_owned(), names: names.join(", ") })
 }

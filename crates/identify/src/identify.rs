@@ -154,6 +154,7 @@ pub fn check(request: Request) -> Result<Checked, IdentifyError> {
         length_play_m: request.length_play_m,
         pressure_play_pa: request.pressure_play_pa,
         assumed: request.assumed,
+        accept_implausible: request.accept_implausible,
         unbounded: request.unbounded,
     })
 }
@@ -173,6 +174,7 @@ pub struct Checked {
     length_play_m: Option<f64>,
     pressure_play_pa: Option<f64>,
     assumed: Assumed,
+    accept_implausible: bool,
     unbounded: bool,
 }
 
@@ -214,6 +216,7 @@ impl Checked {
         let condensed = condense(&estimation, &columns, 1, None)?;
         enough(&estimation[0].recording.path, condensed.total.n_rows() as usize)?;
         let (space, unidentifiable) = self.search_space(&columns, &condensed, force_noise_n);
+        excitation::something_to_fit(&space, &unidentifiable, &estimation[0].recording.path)?;
         let problem = ForceProblem { summary: &condensed.total, columns: &columns, space: &space, steps: &[] };
         let column_floor_rmse_n = problem.floor_mean_square().sqrt();
         let (fit, lags) =
@@ -458,6 +461,7 @@ impl Checked {
                 .collect(),
             bladder_ratio: self.bladder_ratio,
             assumed: self.assumed,
+            accept_implausible: self.accept_implausible,
         }
     }
 }

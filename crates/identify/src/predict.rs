@@ -8,18 +8,34 @@ use pam_core::direction::Thresholds;
 use pam_core::effects::{AugmentedModel, Moment};
 use pam_core::force::ForceModel;
 use pam_core::motion::{Channels, Instant, walk};
-use pam_core::recording::Chunk;
+use pam_core::recording::{Chunk, Recording};
 use pam_core::shift::shifted;
 
 use crate::error::IdentifyError;
+use crate::faults;
 use crate::prepare::{Prepared, direct, gate};
 
 /// A recording with the direction that the model's thresholds give it.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
-pub fn prepare(recording: pam_core::recording::Recording, artifact: &ModelArtifact) -> Result<Prepared, IdentifyError> {
+pub fn prepare(recording: Recording, artifact: &ModelArtifact) -> Result<Prepared, IdentifyError> {
     let gates = gate(vec![recording])?;
+    let mut prepared = direct(gates, artifact.direction, artifact.form)?;
+    Ok(prepared.remove(0))
+}
+
+/// As [`prepare`], for a recording that must be one of the model's muscle, read by instruments that are in order.
+///
+/// # Errors
+/// [`IdentifyError::Fault`] where it cannot be, [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn prepare_plausible(recording: Recording, artifact: &ModelArtifact) -> Result<Prepared, IdentifyError> {
+    let gates = gate(vec![recording])?;
+    let fault = faults::find(&gates, &artifact.geometry)
+        .map_err(|reason| IdentifyError::Samples { path: gates[0].recording.path.clone(), reason })?;
+    if let Some(fault) = fault {
+        return Err(IdentifyError::Fault(fault));
+    }
     let mut prepared = direct(gates, artifact.direction, artifact.form)?;
     Ok(prepared.remove(0))
 }

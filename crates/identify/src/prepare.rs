@@ -8,6 +8,7 @@ use pam_core::recording::Recording;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;
+use crate::faults;
 
 /// A recording with its quality gate, before a direction is known.
 #[derive(Debug)]
@@ -103,5 +104,6 @@ fn directed(
     let driver = if form == Form::AsPrinted { Driver::Pressure } else { Driver::Motion };
     let mut direction = Direction::of(recording, thresholds, driver)?;
     ends.reached(recording, quality)?.into_iter().for_each(|rows| direction.leave_out(rows));
+    faults::spikes::rows(recording, quality)?.into_iter().for_each(|row| direction.leave_out(row..row + 1));
     Ok(direction)
 }

@@ -217,10 +217,12 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
     }
     for (index, free) in found.space.free.iter().enumerate() {
         let (value, _, at_bound) = coordinate(found, index);
-        let (low, high) = free.ranges(muscle.strand_modulus_pa).plausible;
+        let (low, high) = plausible(*free, muscle.strand_modulus_pa);
         let above = value > high;
         if at_bound {
-            let end = if found.fit.x[index] > 0.5 { "upper" } else { "lower" };
+            // As a reader of the artifact sees it: the modulus is the inverse of what is fitted.
+            let is_upper = (found.fit.x[index] > 0.5) != (*free == Free::One(Parameter::StrandCompliance));
+            let end = if is_upper { "upper" } else { "lower" };
             warnings.push(format!(
                 "{} is at the {end} end of its range ({}): eq. 11 lacks something that it stands in for, or {}",
                 free.name(),
@@ -257,6 +259,68 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
         warnings.push("rest_radius is fitted, so k1 is held: the gas term holds their product alone".to_owned());
     }
     warnings
+}
+
+/// What a braided muscle has. Strands as stiff or as soft as the muscle file says are none the less plausible: aramid has
+/// 70 GPa and more, and yarn gives in by more than its fibers do.
+fn plausible(free: Free, strand_modulus_pa: f64) -> (f64, f64) {
+    let (low, high) = free.ranges(strand_modulus_pa).plausible;
+    if free == Free::One(Parameter::StrandCompliance) {
+        (low.min(1.0 / (2.0 * strand_modulus_pa)), high.max(4.0 / strand_modulus_pa))
+    } else {
+        (low, high)
+    }
+}
+
+/// Standard errors that an estimate must lie beyond what muscles have, for the model to be called implausible.
+const CERTAIN: f64 = 3.0;
+/// By how much of the width of what muscles have.
+const FAR: f64 = 0.5;
+/// A constant force that this share of the range of the force explains: a tare that nobody set to zero.
+const TARE_SHARE: f64 = 0.02;
+
+/// Why the parameters are not those of a muscle as eq. 11 describes it, in words; none where they may be.
+///
+/// One parameter beside what muscles have may be a tare, a datum or a muscle of its own kind, which a warning says. A model
+/// is implausible where at least half of what was fitted is there or at its bound, or where gas, bladder or the constant
+/// are far off.
+pub fn implausible(found: &Identified) -> Option<String> {
+    let modulus_pa = found.model.strand_modulus_pa();
+    let ends = |side: fn(f64, f64) -> f64, first: f64, pick: fn(&pam_core::quality::ChannelQuality) -> f64| {
+        found.estimation.iter().filter_map(|prepared| prepared.quality.channel("force")).map(pick).fold(first, side)
+    };
+    let range_n =
+        ends(f64::max, f64::NEG_INFINITY, |force| force.highest) - ends(f64::min, f64::INFINITY, |force| force.lowest);
+    let (mut odd, mut far) = (Vec::new(), Vec::new());
+    for (index, &free) in found.space.free.iter().enumerate() {
+        let (value, stderr, at_bound) = coordinate(found, index);
+        let (low, high) = plausible(free, modulus_pa);
+        let beyond = (low - value).max(value - high);
+        let is_certain = stderr.is_none_or(|stderr| beyond > CERTAIN * stderr);
+        let said = || format!("{} = {}", free.name(), written(free, value));
+        if at_bound || (beyond > 0.0 && is_certain) {
+            odd.push(said());
+        }
+        let allowed = match free {
+            Free::One(Parameter::K1 | Parameter::K2) | Free::BladderSum => FAR * (high - low),
+            Free::One(Parameter::K3) => (FAR * (high - low)).max(TARE_SHARE * range_n),
+            Free::One(_) => f64::INFINITY,
+        };
+        if beyond > allowed && is_certain {
+            far.push(said());
+        }
+    }
+    if !far.is_empty() {
+        return Some(format!("with {}", far.join(", ")));
+    }
+    (odd.len() > 1 && 2 * odd.len() >= found.space.free.len()).then(|| {
+        format!(
+            "since {} of {} are at a bound or beside what muscles have ({})",
+            odd.len(),
+            found.space.free.len(),
+            odd.join(", ")
+        )
+    })
 }
 
 /// How many more recordings a warning holds for.

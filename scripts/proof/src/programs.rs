@@ -83,7 +83,7 @@ impl Programs {
     /// Where it wrote nothing.
     pub fn predict(&self, folder: &Path, log: &Path, model: &str, out: &Path) -> Result<()> {
         let mut command = Command::new(self.folder.join("pam-predict"));
-        command.arg(log).args(["--model", model, "--out"]).arg(out);
+        command.arg(log).args(["--model", model, "--accept-implausible", "--out"]).arg(out);
         run(&mut command, folder, out).map(|_| ())
     }
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::model::ParameterEntry;
 use crate::effects::{self, CATALOGUE, Term};
+use crate::spelling::number;
 
 /// An effect beyond eq. 11.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -53,7 +54,8 @@ impl EffectEntry {
                 let unit = if unit == "1" { "" } else { unit };
                 let message = format!(
                     "parameter {name} of effect {} is {}; physics allows {lowest} to {highest} {unit}",
-                    self.id, entry.value
+                    self.id,
+                    number(entry.value)
                 );
                 return Err(message.trim_end().to_owned());
             }

@@ -118,6 +118,33 @@ pub enum ArtifactError {
         /// What is wrong.
         what: String,
     },
+    /// A result that no program could read, were it written.
+    #[error("nothing is written, since no program could read it: {what}")]
+    Unreadable {
+        /// What is wrong.
+        what: String,
+    },
+}
+
+/// An artifact as people and programs read it, with a line break at its end, once it has been read back.
+///
+/// # Errors
+/// [`ArtifactError::Unreadable`], most likely where a number is none.
+pub fn readable_json<T: Serialize + DeserializeOwned>(artifact: &T) -> Result<Vec<u8>, ArtifactError> {
+    let unreadable = |what: String| ArtifactError::Unreadable { what };
+    let mut bytes = serde_json::to_vec_pretty(artifact).map_err(|error| unreadable(error.to_string()))?;
+    bytes.push(b'\n');
+    if let Err(error) = serde_json::from_slice::<T>(&bytes) {
+        let line = bytes.split(|byte| *byte == b'\n').nth(error.line().saturating_sub(1)).unwrap_or_default();
+        let line = String::from_utf8_lossy(line);
+        let line = line.trim().trim_end_matches(',');
+        // What is not finite has no place in JSON.
+        return Err(unreadable(match line.strip_suffix(": null") {
+            Some(key) => format!("{} is no finite number", key.trim_matches('"')),
+            None => format!("{line}: {}", without_position(&error.to_string())),
+        }));
+    }
+    Ok(bytes)
 }
 
 /// SHA-256 of `bytes`, hexadecimal.
@@ -136,6 +163,7 @@ pub(crate) fn read<T: DeserializeOwned>(
     program: &'static str,
 ) -> Result<(T, String), ArtifactError> {
     #[derive(Deserialize)]
+    #[serde(expecting = "an object with a schema")]
     struct Head {
         schema: String,
     }
@@ -144,7 +172,7 @@ pub(crate) fn read<T: DeserializeOwned>(
         path: path.to_owned(),
         line: error.line(),
         column: error.column(),
-        reason: suggesting(&without_position(&error.to_string())),
+        reason: suggesting(&in_words(&without_position(&error.to_string()))),
         expected,
     };
     let head: Head = serde_json::from_slice(&bytes).map_err(|error| parse(&error))?;
@@ -168,6 +196,14 @@ fn remedy(found: &str, expected: &str, program: &str) -> String {
             format!("a newer version wrote it; update the programs, or write it anew with {program}")
         }
         _ => format!("write it with {program}"),
+    }
+}
+
+/// The message of a JSON error without names of types, which nobody outside this program knows.
+fn in_words(message: &str) -> String {
+    match message.split_once("expected struct ") {
+        Some((before, _)) => format!("{before}expected an object"),
+        None => message.to_owned(),
     }
 }
 

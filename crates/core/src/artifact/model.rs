@@ -10,8 +10,9 @@ use super::{ArtifactError, Input, Tool};
 use crate::direction::{Standstill, Thresholds};
 use crate::effects::{AugmentedModel, Kind};
 use crate::force::{BaseParameters, ForceModel, Form, Parameter};
-use crate::muscle::Muscle;
+use crate::muscle::{Dimension, Muscle};
 use crate::quality::RecordingQuality;
+use crate::spelling::{nearest, number};
 
 /// Schema name and version.
 pub const SCHEMA: &str = "pam-model/1";
@@ -87,6 +88,14 @@ pub struct IdentifyConfig {
     /// What was assumed of the base; the recordings judged the rest.
     #[serde(default)]
     pub assumed: Assumed,
+    /// Whether the user went on where instruments or parameters are implausible; left out where not.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub accept_implausible: bool,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// Hypotheses of the base that a user may force.
@@ -327,6 +336,16 @@ pub struct ImpliedParameter {
 }
 
 impl ModelArtifact {
+    /// The artifact as JSON that [`read`](Self::read) accepts.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Unreadable`] where it would not be.
+    pub fn json(&self) -> Result<Vec<u8>, ArtifactError> {
+        let bytes = super::readable_json(self)?;
+        self.check().map_err(|what| ArtifactError::Unreadable { what })?;
+        Ok(bytes)
+    }
+
     /// Reads and checks an artifact; gives its SHA-256 as well.
     ///
     /// # Errors
@@ -346,9 +365,27 @@ impl ModelArtifact {
                 _ => return Err(format!("parameter {name} stands there twice")),
             }
         }
+        for (index, entry) in self.parameters.iter().enumerate() {
+            let of_eq_11 = Parameter::ALL.map(|known| (known.artifact_name(), known.unit()));
+            let of_muscle = Dimension::ALL.map(|known| (known.parameter_name(), known.unit()));
+            let known = || of_eq_11.iter().chain(&of_muscle);
+            let Some((name, unit)) = known().find(|(name, _)| *name == entry.name) else {
+                let names: Vec<&str> = known().map(|(name, _)| *name).collect();
+                return Err(match nearest(&entry.name, names.iter().copied()) {
+                    Some(near) => format!("parameter \"{}\" is unknown; did you mean {near}?", entry.name),
+                    None => format!("parameter \"{}\" is unknown; a model has {}", entry.name, names.join(", ")),
+                });
+            };
+            if entry.unit != *unit {
+                return Err(format!("the unit of parameter {name} is \"{}\", expected \"{unit}\"", entry.unit));
+            }
+            if self.parameters[..index].iter().any(|other| other.name == entry.name) {
+                return Err(format!("parameter {name} stands there twice"));
+            }
+        }
         let modulus = self.value(Parameter::StrandCompliance);
         if modulus <= 0.0 {
-            return Err(format!("strand_modulus is {modulus}, which no strand has"));
+            return Err(format!("strand_modulus is {}, which no strand has", number(modulus)));
         }
         let Muscle { rest_length_m, rest_radius_m, braid_angle_rad, wall_thickness_m, strand_count, strand_diameter_m } =
             self.geometry;
@@ -359,7 +396,11 @@ impl ModelArtifact {
         }
         let Thresholds { length_m, pressure_pa, .. } = self.direction;
         if length_m < 0.0 || pressure_pa < 0.0 {
-            return Err(format!("a threshold of the direction is negative: {length_m} m, {pressure_pa} Pa"));
+            return Err(format!(
+                "a threshold of the direction is negative: {} m, {} Pa",
+                number(length_m),
+                number(pressure_pa)
+            ));
         }
         for (index, entry) in self.effects.iter().enumerate() {
             let term = entry.term()?;
@@ -441,6 +482,7 @@ mod tests {
                 fixed: Vec::new(),
                 bladder_ratio: 0.89,
                 assumed: Assumed::default(),
+                accept_implausible: false,
             },
             seed: 1,
             geometry: nominal(),
@@ -501,6 +543,44 @@ mod tests {
         let artifact = artifact(vec![rubber(7.0)]);
         let text = serde_json::to_string(&artifact).expect("an artifact is JSON");
         assert_eq!(serde_json::from_str::<ModelArtifact>(&text).expect("its own text"), artifact);
+    }
+
+    #[test]
+    fn a_parameter_of_another_unit_or_none_of_a_model_is_refused_by_name() {
+        let refusal = |change: &dyn Fn(&mut ModelArtifact)| {
+            let mut artifact = artifact(Vec::new());
+            change(&mut artifact);
+            artifact.check().expect_err("a refusal")
+        };
+        let messages = [
+            refusal(&|artifact| artifact.parameters[3].unit = "kPa".to_owned()),
+            refusal(&|artifact| artifact.parameters[0].unit = "N".to_owned()),
+            refusal(&|artifact| artifact.parameters.push(parameter("rest_lenght", 0.26, "m"))),
+            refusal(&|artifact| artifact.parameters.push(parameter("gears", 4.0, "1"))),
+            refusal(&|artifact| {
+                artifact.parameters.extend([0.26, 0.27].map(|value| parameter("rest_length", value, "m")));
+            }),
+            refusal(&|artifact| artifact.parameters[5].value = -1e300),
+        ];
+        insta::assert_snapshot!(messages.join("\n"), @r#"
+        the unit of parameter c10 is "kPa", expected "Pa"
+        the unit of parameter k1 is "N", expected "1"
+        parameter "rest_lenght" is unknown; did you mean rest_length?
+        parameter "gears" is unknown; a model has k1, k2, k3, c10, c01, strand_modulus, rubber_friction, strand_friction, rest_length, rest_radius, braid_angle, wall_thickness
+        parameter rest_length stands there twice
+        strand_modulus is -1e300, which no strand has
+        "#);
+        let mut fitted = artifact(Vec::new());
+        fitted.parameters.push(parameter("braid_angle", 0.43, "rad"));
+        fitted.check().expect("a model with a fitted dimension");
+    }
+
+    #[test]
+    fn what_no_program_could_read_is_not_written() {
+        let mut artifact = artifact(Vec::new());
+        artifact.json().expect("a plausible artifact");
+        artifact.fit.estimation.fit_percent = f64::NEG_INFINITY;
+        insta::assert_snapshot!(artifact.json().expect_err("null is no number"), @"nothing is written, since no program could read it: fit_percent is no finite number");
     }
 
     #[test]

@@ -124,7 +124,9 @@ fn channel(
     (lowest, highest): (f64, f64),
     sample: &Sample,
 ) -> io::Result<ChannelQuality> {
-    let step = sample.chunks.first().and_then(|chunk| quantization_step(column(chunk)));
+    // A chunk at rest shows no step.
+    let moves = |chunk: &&Chunk| column(chunk).iter().any(|&value| value != column(chunk)[0]);
+    let step = sample.chunks.iter().find(moves).and_then(|chunk| quantization_step(column(chunk)));
     let (mut squares, mut rows) = (0.0, 0.0);
     for chunk in &sample.chunks {
         let noise = noise_std(column(chunk));

@@ -24,6 +24,7 @@ mod read;
 mod repair;
 mod row_fault;
 mod rows;
+mod sameness;
 mod samples;
 mod sniff;
 mod source;
@@ -37,13 +38,14 @@ pub use options::{Calibration, ColumnMap, Columns, ExpressionFault, FixedChannel
 pub use read::{ReadOptions, read_recording, read_recording_observed};
 pub use repair::{Repairs, SkippedRow};
 pub use row_fault::RowFault;
+pub use sameness::share_samples;
 pub use samples::{CHUNK_ROWS, Chunk, MEMORY_ROWS, Samples};
 pub use units::Quantity;
 
 use std::ops::Range;
 
 /// One recording as read.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Recording {
     /// Path as given on the command line; `-` for standard input.
     pub path: String,

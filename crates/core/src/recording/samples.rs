@@ -21,13 +21,14 @@ pub(crate) const MAX_COLUMNS: usize = 5;
 /// # Design
 /// A bench that logs for hours writes more rows than memory holds, and everything downstream walks over
 /// rows once, a chunk at a time. So the first chunks stay in memory and the others go to an unnamed
-/// temporary file, from which any thread reads any chunk by position. Mapping the file would need `unsafe`.
-#[derive(Debug)]
+/// temporary file, from which any thread reads any chunk by position. Mapping the file would need `unsafe`. A clone
+/// shares both.
+#[derive(Debug, Clone)]
 pub struct Samples {
     n_rows: usize,
     layout: Layout,
     in_memory: Vec<Arc<Vec<f64>>>,
-    spilled: Option<Spill>,
+    spilled: Option<Arc<Spill>>,
 }
 
 /// Which optional columns there are.
@@ -254,9 +255,10 @@ impl SamplesBuilder {
         let failed = |source| SpillFailed { directory: self.directory.clone(), source };
         if samples.spilled.is_none() {
             let chunk_len = CHUNK_ROWS * samples.layout.n_columns();
-            samples.spilled = Some(Spill::create(&self.directory, chunk_len).map_err(failed)?);
+            samples.spilled = Some(Arc::new(Spill::create(&self.directory, chunk_len).map_err(failed)?));
         }
-        match &mut samples.spilled {
+        // Nobody shares the file before it is complete.
+        match samples.spilled.as_mut().and_then(Arc::get_mut) {
             Some(spilled) => spilled.append(&data).map_err(failed),
             None => Ok(()),
         }

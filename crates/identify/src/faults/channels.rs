@@ -40,6 +40,14 @@ impl Look {
     }
 }
 
+impl Look {
+    /// Pressure, length and force of each sample.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
+        let forces = self.pressure_pa.iter().zip(&self.length_m).zip(&self.force_n);
+        forces.map(|((&pressure_pa, &length_m), &force_n)| (pressure_pa, length_m, force_n))
+    }
+}
+
 /// Correlation between `force` and an ideal muscle's; free of scale, so that a unit slip does not matter.
 fn ideal_correlation(muscle: &Muscle, pressure: &[f64], length_m: &[f64], force: &[f64]) -> f64 {
     let gas = pam_core::force::gas::Gas::new(muscle);

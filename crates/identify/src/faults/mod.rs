@@ -1,13 +1,20 @@
 //! Instrument faults, looked for before any physics is.
 //!
 //! [`ranges`] finds units under the wrong name and recordings of another muscle from ranges alone;
+//! [`spikes`] and [`frozen`] find samples that no muscle makes; [`scale`] finds units that ranges do not show, [`zero`], after a fit,
+//! a gauge whose zero is elsewhere;
 //! [`channels`] finds swapped channels, a force of the wrong sign and recordings that disagree with one another;
-//! [`lag`] finds a channel that lags the others. The first two refuse the recording, because a fit
+//! [`twice`] finds a recording that is there twice; [`lag`] finds a channel that lags the others. All but the last refuse the recording, because a fit
 //! would absorb the fault in its parameters; a lag is a warning.
 
 pub mod channels;
+pub mod frozen;
 pub mod lag;
 pub mod ranges;
+pub mod scale;
+pub mod spikes;
+pub mod twice;
+pub mod zero;
 
 use crate::prepare::Gated;
 use pam_core::muscle::Muscle;
@@ -33,6 +40,64 @@ pub enum Fault {
         direction: &'static str,
         /// Which units may have been mixed up.
         guess: &'static str,
+    },
+    /// Samples that leap from their neighbors and back.
+    #[error(
+        "{path}: {channel} leaps from its neighbors and back: {rows}; a plug or the logger does this, no muscle: delete the \
+         rows, or go on with --accept-implausible"
+    )]
+    Spikes {
+        /// Recording.
+        path: String,
+        /// Channel.
+        channel: &'static str,
+        /// The first of them, and how many more.
+        rows: String,
+    },
+    /// A channel that stops half way.
+    #[error(
+        "{path}: {channel} stands at {value} from {from_s:.2} to {to_s:.2} s ({rows} rows), and flickers elsewhere: it froze; \
+         cut that part off, or go on with --accept-implausible"
+    )]
+    Frozen {
+        /// Recording.
+        path: String,
+        /// Channel.
+        channel: &'static str,
+        /// Where it stands, with its unit.
+        value: String,
+        /// From when, in s.
+        from_s: f64,
+        /// Until when, in s.
+        to_s: f64,
+        /// For how many rows.
+        rows: usize,
+    },
+    /// A gain that no muscle has, and units that explain it.
+    #[error(
+        "{path}: the force is {gain:.2} times what gas makes in this muscle; {guesses}; name the unit of the column with \
+         --map, check the muscle file, or go on with --accept-implausible"
+    )]
+    Gain {
+        /// First recording.
+        path: String,
+        /// Force over what it should be.
+        gain: f64,
+        /// Which units may have been mixed up.
+        guesses: String,
+    },
+    /// A gauge that falls below the pressure of a vented muscle.
+    #[error(
+        "{path}: pressure falls to {lowest_kpa:.1} kPa, where a vented muscle has 0: the zero of the gauge is off; add \
+         --calibrate 'pressure_kPa = 1 * pressure_kPa + {shift_kpa:.1}', or go on with --accept-implausible"
+    )]
+    GaugeZero {
+        /// Recording.
+        path: String,
+        /// Lowest pressure.
+        lowest_kpa: f64,
+        /// By how much it is off.
+        shift_kpa: f64,
     },
     /// Lengths that the muscle of the muscle file cannot have.
     #[error(
@@ -103,6 +168,16 @@ pub enum Fault {
 /// [`std::io::Error`] where samples cannot be read back.
 pub fn find(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> {
     for gate in gates {
+        if let Some(fault) = spikes::find(gate)? {
+            return Ok(Some(fault));
+        }
+        // Without a force only ranges can be judged.
+        if !gate.recording.samples.has_force() {
+            if let Some(fault) = ranges::check(gate, muscle) {
+                return Ok(Some(fault));
+            }
+            continue;
+        }
         let looks = channels::Look::at(&gate.recording)?;
         // Swapped channels have implausible ranges, too, and are the better explanation.
         let fault = channels::swapped(gate, &looks, muscle)
@@ -110,6 +185,12 @@ pub fn find(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> 
             .or_else(|| channels::wrong_sign(gate, &looks, muscle));
         if fault.is_some() {
             return Ok(fault);
+        }
+        if let Some(fault) = frozen::find(&gate.recording)? {
+            return Ok(Some(fault));
+        }
+        if let Some(fault) = scale::find(gate, &looks, muscle) {
+            return Ok(Some(fault));
         }
     }
     channels::disagreeing(gates, muscle)

@@ -1,0 +1,252 @@
+//! Recordings that share samples, whatever their files are called and whatever units they are in.
+//!
+//! A recording may be there twice as a link, a copy, compressed, in other units, cut or thinned out. Its noise tells: no two
+//! runs of a bench have the same. So a few short runs of rows of one recording, where its channels flicker most, are looked
+//! for in the other: the rows have to agree to what printing in another unit costs, and the second differences of the force,
+//! which are noise, have to be the same as well. Time plays no part, since cut recordings often begin at zero.
+
+use std::io;
+
+use super::{CHUNK_ROWS, Recording};
+
+/// Runs of rows that are looked for, and rows of each.
+const PROBES: usize = 24;
+const PROBE_ROWS: usize = 24;
+/// Places where a run could be, for each that is taken: the one that flickers most.
+const CHOICE: usize = 4;
+/// Half of the last digit that other units leave, as a share of the largest value.
+const TOLERANCE: f64 = 1.5e-4;
+/// Correlation of second differences beyond which noise is the same.
+const SAME_NOISE: f64 = 0.9;
+/// Every so-many-th row at most is kept where a recording is thinned out.
+const MOST_THINNED: usize = 16;
+/// Share of the runs that must be found for two recordings to share samples.
+const SHARE: f64 = 0.1;
+/// Cells by which a row finds the runs that may begin with it.
+const CELLS: usize = 1024;
+
+/// A run of rows: pressure, length, force; the last is zero where none was recorded.
+struct Probe {
+    rows: [[f64; 3]; PROBE_ROWS],
+}
+
+/// Whether two recordings share samples, enough of them that what is held out is no more held out, and what is fitted
+/// counts twice.
+///
+/// # Errors
+/// Where samples cannot be read back.
+pub fn share_samples(left: &Recording, right: &Recording) -> io::Result<bool> {
+    // An empty digest is none.
+    if left.sha256 == right.sha256 && !left.sha256.is_empty() {
+        return Ok(true);
+    }
+    // A recording of another quantity of channels has none in common with either.
+    let (short, long) = if left.samples.n_rows() <= right.samples.n_rows() { (left, right) } else { (right, left) };
+    let found = |of: &Recording, among: &Recording| -> io::Result<bool> {
+        let probes = probes(of)?;
+        let needed = ((SHARE * probes.len() as f64).ceil() as usize).max(2);
+        Ok(probes.len() >= needed && count_found(&probes, among)? >= needed)
+    };
+    // What was cut or thinned out has fewer rows, unless what it was cut from was thinned out later.
+    Ok(found(short, long)? || (short.samples.n_rows() < long.samples.n_rows() && found(long, short)?))
+}
+
+/// Runs spread over a recording, each where it flickers most around its place.
+fn probes(recording: &Recording) -> io::Result<Vec<Probe>> {
+    let n_rows = recording.samples.n_rows();
+    let mut probes = Vec::new();
+    let places = PROBES.min(n_rows / PROBE_ROWS);
+    for place in 0..places {
+        let (first, last) = (place * n_rows / places, (place + 1) * n_rows / places);
+        let mut best: Option<(f64, Probe)> = None;
+        for choice in 0..CHOICE {
+            let start = first + choice * (last - first) / CHOICE;
+            let Some(probe) = probe(recording, start)? else { continue };
+            let flicker = probe.flicker();
+            if flicker > 0.0 && best.as_ref().is_none_or(|best| flicker > best.0) {
+                best = Some((flicker, probe));
+            }
+        }
+        probes.extend(best.map(|(_, probe)| probe));
+    }
+    Ok(probes)
+}
+
+/// The run that begins at a row, unless a chunk ends in it.
+fn probe(recording: &Recording, start: usize) -> io::Result<Option<Probe>> {
+    let chunk = recording.samples.chunk(start / CHUNK_ROWS)?;
+    let here = start - chunk.first_row();
+    if here + PROBE_ROWS > chunk.n_rows() {
+        return Ok(None);
+    }
+    let force_n = chunk.force_n();
+    let rows = std::array::from_fn(|row| {
+        let row = here + row;
+        [chunk.pressure_pa()[row], chunk.length_m()[row], force_n.get(row).copied().unwrap_or(0.0)]
+    });
+    Ok(Some(Probe { rows }))
+}
+
+impl Probe {
+    /// Second differences of a channel.
+    fn bends(rows: &[[f64; 3]; PROBE_ROWS], channel: usize) -> impl Iterator<Item = f64> + '_ {
+        rows.windows(3).map(move |three| three[0][channel] - 2.0 * three[1][channel] + three[2][channel])
+    }
+
+    /// The channel that noise is compared in.
+    fn noisy_channel(&self) -> usize {
+        if Self::bends(&self.rows, 2).any(|bend| bend != 0.0) { 2 } else { 0 }
+    }
+
+    /// How much the run flickers, as a share of its largest value.
+    fn flicker(&self) -> f64 {
+        let channel = self.noisy_channel();
+        let largest = self.rows.iter().map(|row| row[channel].abs()).fold(f64::MIN_POSITIVE, f64::max);
+        Self::bends(&self.rows, channel).map(|bend| bend * bend).sum::<f64>().sqrt() / largest
+    }
+
+    /// Whether `rows` are this run.
+    fn is(&self, rows: &[[f64; 3]; PROBE_ROWS]) -> bool {
+        let channel = self.noisy_channel();
+        let (mut cross, mut squares, mut other_squares) = (0.0, 0.0, 0.0);
+        for (own, other) in Self::bends(&self.rows, channel).zip(Self::bends(rows, channel)) {
+            cross += own * other;
+            squares += own * own;
+            other_squares += other * other;
+        }
+        cross > SAME_NOISE * (squares * other_squares).sqrt()
+    }
+}
+
+/// How many of the runs are in a recording, at any of the strides of a recording that was thinned out.
+fn count_found(probes: &[Probe], among: &Recording) -> io::Result<usize> {
+    // The channel that rows are sorted into cells by: force, or pressure where there is none.
+    let key = if among.samples.has_force() && probes.iter().any(|probe| probe.rows[0][2] != 0.0) { 2 } else { 0 };
+    let mut largest = [f64::MIN_POSITIVE; 3];
+    for probe in probes {
+        for row in &probe.rows {
+            (0..3).for_each(|channel| largest[channel] = largest[channel].max(row[channel].abs()));
+        }
+    }
+    let tolerance = largest.map(|value| TOLERANCE * value);
+    let agree = |own: &[f64; 3], other: &[f64; 3]| {
+        (0..3).all(|channel| (own[channel] - other[channel]).abs() <= tolerance[channel])
+    };
+    let (lowest, width) = (-1.01 * largest[key], 2.02 * largest[key] / CELLS as f64);
+    let cell = |value: f64| ((value - lowest) / width) as usize;
+    let mut cells: Vec<Vec<usize>> = vec![Vec::new(); CELLS + 1];
+    for (index, probe) in probes.iter().enumerate() {
+        let first = probe.rows[0][key];
+        let near = cell(first - tolerance[key])..=cell(first + tolerance[key]).min(CELLS);
+        cells[near].iter_mut().for_each(|cell| cell.push(index));
+    }
+    let mut is_found = vec![false; probes.len()];
+    // A run may go on in the next chunk.
+    let reach = PROBE_ROWS * MOST_THINNED;
+    let mut before: Vec<[f64; 3]> = Vec::new();
+    let n_chunks = among.samples.n_chunks();
+    for chunk_index in 0..n_chunks {
+        let chunk = among.samples.chunk(chunk_index)?;
+        let force_n = chunk.force_n();
+        let new = (0..chunk.n_rows())
+            .map(|row| [chunk.pressure_pa()[row], chunk.length_m()[row], force_n.get(row).copied().unwrap_or(0.0)]);
+        before.extend(new);
+        let is_last = chunk_index + 1 == n_chunks;
+        let end = if is_last { before.len() } else { before.len().saturating_sub(reach) };
+        for start in 0..end {
+            let value = before[start][key];
+            if value < lowest {
+                continue;
+            }
+            let Some(candidates) = cells.get(cell(value)) else { continue };
+            for &index in candidates {
+                if !is_found[index] && agree(&probes[index].rows[0], &before[start]) {
+                    is_found[index] = (1..=MOST_THINNED).any(|stride| {
+                        let all = (1..PROBE_ROWS).all(|row| {
+                            before.get(start + row * stride).is_some_and(|other| agree(&probes[index].rows[row], other))
+                        });
+                        all && probes[index].is(&std::array::from_fn(|row| before[start + row * stride]))
+                    });
+                }
+            }
+        }
+        before.drain(..end);
+    }
+    Ok(is_found.into_iter().filter(|found| *found).count())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::{Repairs, Samples};
+    use rand::{RngExt, SeedableRng};
+
+    /// A run of a bench: the same path, with noise of its own.
+    fn run(seed: u64, noise: f64) -> [Vec<f64>; 4] {
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(seed);
+        let mut noisy = |value: f64, size: f64| value + noise * size * generator.random_range(-1.0..1.0);
+        let time_s: Vec<f64> = (0..20_000).map(|row| 0.005 * f64::from(row)).collect();
+        let pressure_pa = time_s.iter().map(|t| noisy(2.5e5 + 2e5 * (0.5 * t).sin(), 500.0)).collect();
+        let length_m = time_s.iter().map(|t| noisy(0.24 + 0.02 * (0.3 * t).sin(), 3e-5)).collect();
+        let force_n = time_s.iter().map(|t| noisy(400.0 + 300.0 * (0.5 * t).sin(), 0.5)).collect();
+        [time_s, pressure_pa, length_m, force_n]
+    }
+
+    /// Those of its rows that `keep` keeps, as they come back from a file with so many digits of bar, inch and pound.
+    fn recording(columns: &[Vec<f64>; 4], keep: impl Fn(usize) -> bool, printed: bool) -> Recording {
+        let through = |value: f64, unit: f64, digit: f64| {
+            if printed { (value / unit / digit).round() * digit * unit } else { value }
+        };
+        let units = [(1.0, 1e-3), (1e5, 1e-3), (0.0254, 1e-3), (4.448_221_615, 1e-2)];
+        let columns: Vec<Vec<f64>> = columns
+            .iter()
+            .zip(units)
+            .map(|(column, (unit, digit))| {
+                let kept = column.iter().enumerate().filter(|(row, _)| keep(*row));
+                kept.map(|(_, &value)| through(value, unit, digit)).collect()
+            })
+            .collect();
+        let samples = Samples::from_columns(&columns[0], &columns[1], &columns[2], &columns[3]);
+        Recording {
+            path: "r.csv".to_owned(),
+            sha256: String::new(),
+            segments: std::iter::once(0..samples.n_rows()).collect(),
+            samples,
+            repairs: Repairs::default(),
+            ignored_columns: Vec::new(),
+        }
+    }
+
+    fn shared(left: &Recording, right: &Recording) -> bool {
+        let both = [share_samples(left, right).expect("in memory"), share_samples(right, left).expect("in memory")];
+        assert_eq!(both[0], both[1], "the order says nothing");
+        both[0]
+    }
+
+    #[test]
+    fn a_recording_is_known_in_other_units_cut_and_thinned_out() {
+        let columns = run(1, 1.0);
+        let whole = recording(&columns, |_| true, false);
+        assert!(shared(&whole, &recording(&columns, |_| true, false)));
+        assert!(shared(&whole, &recording(&columns, |_| true, true)), "units");
+        assert!(shared(&whole, &recording(&columns, |row| (3_000..9_000).contains(&row), false)), "cut");
+        assert!(shared(&whole, &recording(&columns, |row| row > 7_000, true)), "cut, units");
+        assert!(shared(&whole, &recording(&columns, |row| row % 5 == 2, false)), "thinned out");
+        assert!(shared(&whole, &recording(&columns, |row| row < 400, false)), "a short cut");
+        let (early, late) =
+            (recording(&columns, |row| row < 12_000, false), recording(&columns, |row| row > 8_000, false));
+        assert!(shared(&early, &late), "two cuts that overlap");
+    }
+
+    #[test]
+    fn another_run_of_the_same_path_shares_nothing() {
+        for noise in [1.0, 0.1, 0.01] {
+            let (one, other) = (run(1, noise), run(2, noise));
+            assert!(!shared(&recording(&one, |_| true, false), &recording(&other, |_| true, false)), "{noise}");
+            assert!(!shared(&recording(&one, |_| true, false), &recording(&other, |row| row < 5_000, true)), "{noise}");
+        }
+        let columns = run(1, 1.0);
+        let halves = [recording(&columns, |row| row < 10_000, false), recording(&columns, |row| row >= 10_000, false)];
+        assert!(!shared(&halves[0], &halves[1]), "two halves are two recordings");
+    }
+}

@@ -1,0 +1,113 @@
+//! Units that ranges alone do not show: psi as kPa, pounds as newtons.
+//!
+//! What a muscle does is written as a sum that needs no search, and its weights tell what the instruments did:
+//!
+//! ```text
+//! F ≈ g p A(ε) - g p₀ A(ε) + b B(ε) + c
+//! ```
+//!
+//! | symbol | meaning                                                                            |
+//! |--------|------------------------------------------------------------------------------------|
+//! | `A(ε)` | force of the gas per pressure, of an ideal braid                                     |
+//! | `B(ε)` | force of a bladder of latex                                                          |
+//! | `g`    | gain: 0.6 to 1.3 for every muscle, times that of the force, over that of the pressure |
+//! | `p₀`   | pressure below which the muscle does nothing: a zero, or physics                     |
+//!
+//! A gain that no muscle has and that a pair of units explains is a unit under the wrong name.
+
+use nalgebra::{Matrix4, Vector4};
+use pam_core::force::bladder::Bladder;
+use pam_core::force::gas::Gas;
+use pam_core::muscle::Muscle;
+
+use super::Fault;
+use super::channels::Look;
+use crate::prepare::Gated;
+
+/// Gains that a muscle, a gauge and a load cell in order may have together.
+const GAINS: (f64, f64) = (0.6, 1.3);
+/// Gains beyond which there is something wrong for certain.
+const BEYOND: (f64, f64) = (0.28, 2.7);
+/// Share of the force that the sum has to explain.
+const EXPLAINED: f64 = 0.8;
+/// What a bladder has, for the column `B`, in Pa.
+const BLADDER_PA: [f64; 2] = [118.4e3, 105.7e3];
+/// A vented muscle has no pressure; below this a gauge has its zero elsewhere, in Pa.
+const BELOW_ZERO_PA: f64 = -8e3;
+
+/// A unit that stands under the name of another: how many of the one make the other, with what to say.
+const FORCES: [(f64, &str); 5] = [
+    (4.448, "lbf under a header that says N is a factor of 4.448"),
+    (9.807, "kgf under a header that says N is a factor of 9.807"),
+    (1.0 / 4.448, "N under a header that says lbf is a factor of 4.448"),
+    (1.0 / 9.807, "N under a header that says kgf is a factor of 9.807"),
+    (2.205, "lbf under a header that says kgf is a factor of 2.205"),
+];
+const PRESSURES: [(f64, &str); 8] = [
+    (6.895, "psi under a header that says kPa is a factor of 6.895"),
+    (1.0 / 6.895, "kPa under a header that says psi is a factor of 6.895"),
+    (14.5, "bar under a header that says psi is a factor of 14.5"),
+    (1.0 / 14.5, "psi under a header that says bar is a factor of 14.5"),
+    (10.0, "bar under a header that says MPa, turned round, is a factor of 10"),
+    (0.1, "MPa under a header that says bar, turned round, is a factor of 10"),
+    (100.0, "bar under a header that says kPa is a factor of 100"),
+    (0.01, "kPa under a header that says bar is a factor of 100"),
+];
+
+/// A unit under the wrong name, as a gain that no muscle has, in one recording; or a gauge that falls below zero.
+pub fn find(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
+    let path = || gate.recording.path.clone();
+    if let Some(pressure) = gate.quality.channel("pressure") {
+        let low_pa = pressure.lowest + 6.0 * pressure.noise;
+        if low_pa < BELOW_ZERO_PA {
+            let (lowest_kpa, shift_kpa) = (pressure.lowest * 1e-3, -low_pa * 1e-3);
+            return Some(Fault::GaugeZero { path: path(), lowest_kpa, shift_kpa });
+        }
+    }
+    let (gain, explained) = gain(look, muscle)?;
+    if explained < EXPLAINED || (BEYOND.0..=BEYOND.1).contains(&gain) || gain <= 0.0 {
+        return None;
+    }
+    // A force in a larger unit than its name says is too small, a pressure likewise makes the gain too large.
+    let by_force = FORCES.iter().map(|&(factor, words)| (gain * factor, words));
+    let by_pressure = PRESSURES.iter().map(|&(factor, words)| (gain / factor, words));
+    let guesses: Vec<&str> = by_force
+        .chain(by_pressure)
+        .filter(|(gain, _)| (GAINS.0..=GAINS.1).contains(gain))
+        .map(|(_, words)| words)
+        .collect();
+    (!guesses.is_empty()).then(|| Fault::Gain { path: path(), gain, guesses: guesses.join("; or ") })
+}
+
+/// `g` by least squares, and the share of the force that the sum explains; none where the force says nothing.
+fn gain(look: &Look, muscle: &Muscle) -> Option<(f64, f64)> {
+    let (gas, bladder) = (Gas::new(muscle), Bladder::new(muscle));
+    // In bar and per hundred newtons, so that the columns are of one size.
+    let columns = |pressure_pa: f64, length_m: f64| {
+        let per_bar = 1e-2 * gas.force_n(1e5, muscle.contraction_ratio(length_m), 1.0, 1.05);
+        let rubber = 1e-2 * bladder.force_n(length_m, BLADDER_PA[0], BLADDER_PA[1]);
+        Vector4::new(1e-5 * pressure_pa * per_bar, per_bar, rubber, 1.0)
+    };
+    let (mut normal, mut right) = (Matrix4::<f64>::zeros(), Vector4::<f64>::zeros());
+    let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    for (pressure_pa, length_m, force_n) in look.rows() {
+        let row = columns(pressure_pa, length_m);
+        if row.iter().all(|value| value.is_finite()) && force_n.is_finite() {
+            let force = 1e-2 * force_n;
+            normal += row * row.transpose();
+            right += row * force;
+            (n, sum, squares) = (n + 1.0, sum + force, squares + force * force);
+        }
+    }
+    // A little of what muscles have, for what the recordings do not say: no zero, rubber of latex.
+    let usual = Vector4::new(0.9, 0.0, 1.0, 0.0);
+    let trust = Matrix4::from_diagonal(&Vector4::new(1e-6, 1e-4, 1e-3, 1e-6)) * n;
+    let inverse = (normal + trust).try_inverse()?;
+    let found = inverse * (right + trust * usual);
+    let residual = (squares - 2.0 * found.dot(&right) + (normal * found).dot(&found)).max(0.0);
+    let spread = squares - sum * sum / n.max(1.0);
+    if n < 16.0 || spread <= 0.0 {
+        return None;
+    }
+    Some((found[0], 1.0 - residual / spread))
+}
