@@ -144,11 +144,20 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     for _ in 0..MOST_LAWS {
         let question = Question::new(&estimation, &model, limits.clone());
         let Some(standstill) = laws::better(&question, &answer.track, &answer.found, model.direction)? else { break };
+        let before = model.direction.standstill;
         model.direction.standstill = standstill;
         redirect(&mut estimation, model.direction, model.form)?;
         redirect(&mut holdout, model.direction, model.form)?;
         track = Track::of(&estimation, model.direction, &model.force_model())?;
-        answer = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
+        let other = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
+        let left = |answer: &Answer| answer.found.best.held_out.mean_square();
+        if left(&other) >= left(&answer) {
+            model.direction.standstill = before;
+            redirect(&mut estimation, model.direction, model.form)?;
+            redirect(&mut holdout, model.direction, model.form)?;
+            break;
+        }
+        answer = other;
     }
     let question = Question::new(&estimation, &model, limits);
     let Answer { track, mut found, knocks, mut sizes } = answer;

@@ -41,6 +41,8 @@ pub struct HeldOut {
     pub blocks: Vec<f64>,
     /// Rows of each block that count.
     pub counts: Vec<f64>,
+    /// What the sensors leave, in N²: no block is known better.
+    pub floor_square: f64,
 }
 
 impl HeldOut {
@@ -57,10 +59,12 @@ impl HeldOut {
         self.log_ratios(with).zip(&self.counts).map(|(ratio, count)| ratio * count * each).sum()
     }
 
-    /// `ln(without / with)` of every block; 0 where a block has no rows.
+    /// `ln(without / with)` of every block, the sensors' floor in both, so that what is gained or lost below it counts for
+    /// nothing; 0 where a block has no rows.
     pub fn log_ratios<'a>(&'a self, with: &'a Self) -> impl Iterator<Item = f64> + 'a {
         self.blocks.iter().zip(&with.blocks).zip(&self.counts).map(|((before, after), &count)| {
-            if count > 0.0 && *before > 0.0 && *after > 0.0 { (before / after).ln() } else { 0.0 }
+            let floor = self.floor_square;
+            if count > 0.0 && *before > 0.0 && *after > 0.0 { ((before + floor) / (after + floor)).ln() } else { 0.0 }
         })
     }
 }
@@ -74,6 +78,8 @@ pub struct Joint<'a> {
     pub space: &'a SearchSpace,
     /// Ranges of the amplitudes.
     pub ranges: &'a [(f64, f64)],
+    /// What the sensors leave, in N².
+    pub floor_square: f64,
 }
 
 impl Joint<'_> {
@@ -138,6 +144,6 @@ impl Joint<'_> {
                 rows.square_sum(block, &fit.weights, &fit.nuisances) / counts[block].max(1.0)
             })
             .collect();
-        Some(HeldOut { blocks, counts })
+        Some(HeldOut { blocks, counts, floor_square: self.floor_square })
     }
 }

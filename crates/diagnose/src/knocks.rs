@@ -161,7 +161,7 @@ impl Knocks {
         let n = FOLDS as f64;
         let variance = (n - 1.0) / n * others.iter().map(|slope| (slope - mean).powi(2)).sum::<f64>();
         let counts: Vec<f64> = sums.iter().map(|sums| sums.rows).collect();
-        let without = HeldOut { blocks: sums.iter().map(|sums| sums.yy / sums.rows).collect(), counts: counts.clone() };
+        let without = HeldOut { blocks: sums.iter().map(|sums| sums.yy / sums.rows).collect(), counts: counts.clone(), floor_square: 0.0 };
         let with = HeldOut {
             blocks: sums
                 .iter()
@@ -169,6 +169,7 @@ impl Knocks {
                 .map(|(index, sums)| sums.left_by(others[index % FOLDS]) / sums.rows)
                 .collect(),
             counts,
+            floor_square: 0.0,
         };
         let explained = without.mean_square() - with.mean_square();
         // The columns of the effect are the negative acceleration.

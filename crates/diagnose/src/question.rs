@@ -62,6 +62,7 @@ impl<'a> Question<'a> {
             strand_modulus_pa: self.model.strand_modulus_pa,
             only: None,
             nuisance,
+            floor_square: self.limits.sensor_floor_n.powi(2),
         }
     }
 

@@ -308,6 +308,7 @@ pub(crate) mod tests {
                 strand_modulus_pa: 3e9,
                 only: None,
                 nuisance: &crate::nuisance::NONE,
+        floor_square: 0.0,
             }
         }
     }

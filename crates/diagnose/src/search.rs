@@ -127,7 +127,11 @@ pub fn search(
         let bent = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
         // Other forms that only follow the noise are no better than none.
         let before = if bent.held_out.mean_square() < best.held_out.mean_square() { &bent } else { &best };
-        let trials = trial::among(&beside, &bent.state, &before.held_out, &seen, &known, &allowed);
+        // A smooth static effect is no more than another smooth function beside a map that is one.
+        let memory = |id: &str| {
+            allowed(id) && pam_core::effects::effect(id).is_some_and(|effect| !effect.is_static() || effect.is_local())
+        };
+        let trials = trial::among(&beside, &bent.state, &before.held_out, &seen, &known, &memory);
         looked();
         if looks == 0 {
             first.clone_from(&trials);
@@ -140,7 +144,7 @@ pub fn search(
         }
         if std::env::var_os("PAM_DEBUG").is_some() {
             eprintln!("look {looks}: {:?} bent {:.4} best {:.4} floor² {:.4}", best.state.guesses, bent.held_out.mean_square(), best.held_out.mean_square(), floor_square);
-            for t in trials.iter().take(6) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
+            for t in trials.iter().take(25) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
         }
         let Some(chosen) = trials.into_iter().find(|trial| worth(trial, before, &whole, floor_square, limits)) else {
             break;
@@ -192,7 +196,7 @@ fn kept_map(plain: &Setting<'_>, best: Judged, map: Nuisance) -> Option<(Judged,
 }
 
 /// Share of what the static map takes up that a static effect must take up to be named in its place.
-const OF_THE_MAP: f64 = 0.8;
+const OF_THE_MAP: f64 = 0.93;
 
 /// `best` with the static effect that stands for the static map, if there is one.
 fn static_effect(
@@ -221,7 +225,7 @@ fn static_effect(
     let trials = trial::among(&beside, &bare.state, &bare.held_out, seen, &Shapes::new(), &statics);
     if std::env::var_os("PAM_DEBUG").is_some() {
         eprintln!("static: {:?} bare {:.4} map {:.4}", bare.state.guesses, bare.held_out.mean_square(), best.held_out.mean_square());
-        for t in trials.iter().take(6) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
+        for t in trials.iter().take(25) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
     }
     let chosen = trials.into_iter().find(|trial| {
         let gained = bare.held_out.mean_square() - trial.held_out.mean_square();

@@ -37,6 +37,8 @@ pub struct Setting<'a> {
     pub only: Option<&'a [bool]>,
     /// What is always in beside base and effects.
     pub nuisance: &'a Nuisance,
+    /// What the sensors leave, in N².
+    pub floor_square: f64,
 }
 
 /// A hypothesis with its joint fit.
@@ -166,7 +168,7 @@ impl<'a> Setting<'a> {
     }
 
     fn joint<'b>(&'b self, ranges: &'b [(f64, f64)]) -> Joint<'b> {
-        Joint { columns: self.columns, space: self.space, ranges }
+        Joint { columns: self.columns, space: self.space, ranges, floor_square: self.floor_square }
     }
 
     fn model(&self, fit: &JointFit) -> ForceModel {

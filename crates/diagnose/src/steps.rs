@@ -37,33 +37,37 @@ fn jump_n(setting: &Setting<'_>, residuals_n: &[f64], range: std::ops::Range<usi
 
 /// Time to either side in which a drive that starts, stops or turns may be what made the force jump, in s.
 const STIR_S: f64 = 0.3;
-/// Share of the largest speed or rate by which a drive that goes on changes, at most.
-const GOES_ON: f64 = 0.1;
+/// Shares of the largest speed or rate below which a drive rests, and above which it moves.
+const RESTS: f64 = 0.03;
+/// See [`RESTS`].
+const MOVES: f64 = 0.15;
 
-/// Where within `range` the drives start, stop or turn nearby.
+/// Where within `range` a drive starts or stops, or friction turns over, nearby.
 fn stirred(setting: &Setting<'_>, range: std::ops::Range<usize>) -> Vec<bool> {
     let instants = &setting.track.instants[range];
     let channels: [fn(&Instant) -> f64; 2] =
-        [|instant| instant.moment.speed_m_per_s, |instant| instant.moment.pressure_rate_pa_per_s];
-    let mut stirred = vec![false; instants.len()];
-    for channel in channels {
-        let largest = instants.iter().map(|instant| channel(instant).abs()).fold(0.0, f64::max);
-        let mut first = 0;
-        let mut end = 0;
-        for at in 0..instants.len() {
-            let time_s = instants[at].moment.time_s;
-            while instants[first].moment.time_s < time_s - STIR_S {
-                first += 1;
-            }
-            while end < instants.len() && instants[end].moment.time_s <= time_s + STIR_S {
-                end += 1;
-            }
-            let (low, high) = instants[first..end]
-                .iter()
-                .map(channel)
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), rate| (low.min(rate), high.max(rate)));
-            stirred[at] |= high - low > GOES_ON * largest;
+        [|instant| instant.moment.speed_m_per_s.abs(), |instant| instant.moment.pressure_rate_pa_per_s.abs()];
+    let largest = channels.map(|channel| instants.iter().map(channel).fold(0.0, f64::max));
+    let (mut first, mut end) = (0, 0);
+    let mut stirred = Vec::with_capacity(instants.len());
+    for instant in instants {
+        let time_s = instant.moment.time_s;
+        while instants[first].moment.time_s < time_s - STIR_S {
+            first += 1;
         }
+        while end < instants.len() && instants[end].moment.time_s <= time_s + STIR_S {
+            end += 1;
+        }
+        let near = &instants[first..end];
+        let range_of = |value: &dyn Fn(&Instant) -> f64| {
+            near.iter().map(value).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+        };
+        let starts = channels.iter().zip(largest).any(|(channel, largest)| {
+            let (low, high) = range_of(channel);
+            low < RESTS * largest && high > MOVES * largest
+        });
+        let (low, high) = range_of(&|instant| instant.moment.direction);
+        stirred.push(starts || high - low > 0.5);
     }
     stirred
 }

@@ -212,6 +212,7 @@ pub struct Remainder {
     fold_of_block: Vec<usize>,
     counts: Vec<f64>,
     counted: Vec<bool>,
+    floor_square: f64,
 }
 
 impl Remainder {
@@ -258,6 +259,7 @@ impl Remainder {
             fold_of_block: setting.track.fold_of_block.clone(),
             counts: state.normal.counts().to_vec(),
             counted,
+            floor_square: setting.floor_square,
         }
     }
 
@@ -342,7 +344,7 @@ impl Remainder {
                 (coefficients.dot(&(product * coefficients))).max(0.0) / self.counts[block].max(1.0)
             })
             .collect();
-        Some(HeldOut { blocks, counts: self.counts.clone() })
+        Some(HeldOut { blocks, counts: self.counts.clone(), floor_square: self.floor_square })
     }
 
     /// What the columns `kept` say, held out and at every instant.

@@ -34,6 +34,10 @@ impl Effect for BraidLockup {
         true
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }

@@ -172,6 +172,11 @@ pub trait Effect: Sync {
         Vec::new()
     }
 
+    /// Whether a static effect acts in a part of the range alone, where no smooth map follows it.
+    fn is_local(&self) -> bool {
+        false
+    }
+
     /// Whether all its amplitudes have the same sign, whichever it is.
     fn has_one_sign(&self) -> bool {
         false

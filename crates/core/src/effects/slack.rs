@@ -41,6 +41,10 @@ impl Effect for Slack {
         true
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }

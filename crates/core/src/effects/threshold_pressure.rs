@@ -29,6 +29,10 @@ impl Effect for ThresholdPressure {
         true
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }

@@ -80,6 +80,7 @@ fn separation(
         strand_modulus_pa: setting.strand_modulus_pa,
         only: None,
         nuisance: &crate::nuisance::NONE,
+        floor_square: 0.0,
     };
     let runs: Vec<Run> = explanations
         .par_iter()
