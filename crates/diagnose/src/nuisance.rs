@@ -63,6 +63,11 @@ const MAPPED: [Coordinate; 2] = [Coordinate::Pressure, Coordinate::Contraction];
 /// Travel in which friction turns over, in m: half of the least that pages call pre-sliding.
 const TURN_M: f64 = 1e-4;
 
+/// Knots of a free static map over pressure and contraction, the same in both directions and with the sign of friction.
+const FREE_EVEN: [usize; 2] = [8, 7];
+/// See [`FREE_EVEN`].
+const FREE_ODD: [usize; 2] = [4, 4];
+
 /// Prior precision of the static map and of forms: hardly any, enough to keep what the data do not see finite.
 const LOOSE: f64 = 20.0;
 
@@ -192,6 +197,29 @@ impl Nuisance {
         self.with(Group::EvenMap, even, &track.counted, LOOSE).with(Group::OddMap, odd, &track.counted, LOOSE)
     }
 
+    /// The same with a static map that follows bends as well: piecewise linear over pressure and contraction, which no effect
+    /// of time, rate or history can hide behind or grow from.
+    #[must_use]
+    pub fn with_free_map(&self, track: &Track, coordinates: &Coordinates) -> Self {
+        let plane = |n: [usize; 2], sign: &dyn Fn(usize) -> f64| {
+            let [by_pressure, by_contraction] = [0, 1].map(|index| {
+                let values = coordinates.of_kind(MAPPED[index]);
+                let knots = knots(values, &track.counted, n[index]);
+                values.iter().map(|&value| hats(&knots, value)).collect::<Vec<Vec<f64>>>()
+            });
+            let mut columns = Vec::new();
+            for i in 0..by_pressure.first().map_or(0, Vec::len) {
+                for j in 0..by_contraction.first().map_or(0, Vec::len) {
+                    columns.push((0..track.n()).map(|at| sign(at) * by_pressure[at][i] * by_contraction[at][j]).collect());
+                }
+            }
+            columns
+        };
+        let even = plane(FREE_EVEN, &|_| 1.0);
+        let odd = plane(FREE_ODD, &|at| track.instants[at].moment.direction);
+        self.with(Group::EvenMap, even, &track.counted, LOOSE).with(Group::OddMap, odd, &track.counted, LOOSE)
+    }
+
     /// The static map with `coefficients` as a model carries it; none where there is no map.
     pub fn map_term(&self, coefficients: &[f64], track: &Track, coordinates: &Coordinates) -> Option<Term> {
         let columns = |wanted: Group| self.groups.iter().find(|(group, _)| *group == wanted).map(|(_, columns)| columns);
@@ -230,4 +258,35 @@ fn range(values: &[f64], counted: &[bool]) -> (f64, f64) {
 pub(crate) fn over_range(values: &[f64], counted: &[bool]) -> Vec<f64> {
     let (low, high) = range(values, counted);
     values.iter().map(|value| scaled(*value, low, high)).collect()
+}
+
+/// Knots between the lowest and the highest value that count, half by distance and half by number; one where nothing varies.
+fn knots(values: &[f64], counted: &[bool], n: usize) -> Vec<f64> {
+    let kept = values.iter().zip(counted).filter(|(value, counted)| **counted && value.is_finite());
+    let mut sorted: Vec<f64> = kept.map(|(value, _)| *value).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else { return vec![0.0] };
+    let last = sorted.len() - 1;
+    let mut knots: Vec<f64> = (0..n)
+        .map(|index| {
+            let share = index as f64 / (n - 1) as f64;
+            0.5 * (low + share * (high - low)) + 0.5 * sorted[(share * last as f64) as usize]
+        })
+        .collect();
+    knots.dedup_by(|next, before| *next - *before <= 1e-3 * (high - low));
+    knots
+}
+
+/// Value of each piecewise linear function between `knots`; they sum to one.
+fn hats(knots: &[f64], value: f64) -> Vec<f64> {
+    let mut hats = vec![0.0; knots.len()];
+    if knots.len() < 2 {
+        hats.fill(1.0);
+        return hats;
+    }
+    let above = knots.partition_point(|&knot| knot <= value).clamp(1, knots.len() - 1);
+    let share = ((value - knots[above - 1]) / (knots[above] - knots[above - 1])).clamp(0.0, 1.0);
+    hats[above - 1] = 1.0 - share;
+    hats[above] = share;
+    hats
 }

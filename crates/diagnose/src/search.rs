@@ -103,6 +103,7 @@ pub fn search(
     let plain = &setting.beside(&of_recordings);
     let base = judged(plain, plain.fit(Vec::new(), start, model)?)?;
     let nuisance = plain.nuisance.with_map(track, &coordinates);
+    let free = plain.nuisance.with_free_map(track, &coordinates);
     let mapped = plain.beside(&nuisance);
     let mut best = judged(&mapped, mapped.fit_near(Vec::new(), &base.state)?)?;
     let remainder = Remainder::of(&mapped, &best.state);
@@ -122,33 +123,60 @@ pub fn search(
     let mut known = Shapes::new();
     let mut looks = 0;
     while best.state.guesses.len() < limits.max_effects {
-        let formed = forms::with_forms(&mapped, &best.state, &coordinates, &nuisance);
-        let beside = mapped.beside(&formed);
-        let bent = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
-        // Other forms that only follow the noise are no better than none.
-        let before = if bent.held_out.mean_square() < best.held_out.mean_square() { &bent } else { &best };
-        // A smooth static effect is no more than another smooth function beside a map that is one.
-        let memory = |id: &str| {
-            allowed(id) && pam_core::effects::effect(id).is_some_and(|effect| !effect.is_static() || effect.is_local())
-        };
-        let trials = trial::among(&beside, &bent.state, &before.held_out, &seen, &known, &memory);
+        let (before, trials) = [&free, &nuisance]
+            .into_iter()
+            .enumerate()
+            .map(|(index, map)| {
+                let formed = forms::with_forms(&mapped, &best.state, &coordinates, map);
+                let beside = mapped.beside(&formed);
+                let bare = if index == 0 {
+                    let beside = plain.beside(map);
+                    judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?
+                } else {
+                    best.clone()
+                };
+                let bent = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
+                // Other forms that only follow the noise are no better than none.
+                let before =
+                    if bent.held_out.mean_square() < bare.held_out.mean_square() { bent.clone() } else { bare };
+                // Beside a map that bends, a static effect is one more bend; beside a smooth one, one that acts in a part of the
+                // range stands out.
+                let takes = |id: &str| {
+                    allowed(id)
+                        && pam_core::effects::effect(id).is_some_and(|effect| {
+                            if index == 0 { !effect.is_static() } else { effect.is_static() && effect.is_local() }
+                        })
+                };
+                let trials = trial::among(&beside, &bent.state, &before.held_out, &seen, &known, &takes);
+                Some((before, trials))
+            })
+            .collect::<Option<Vec<_>>>()?
+            .into_iter()
+            .fold((Vec::new(), Vec::new()), |(mut befores, mut all): (Vec<Judged>, Vec<(usize, Trial)>), (before, trials)| {
+                all.extend(trials.into_iter().map(|trial| (befores.len(), trial)));
+                befores.push(before);
+                (befores, all)
+            });
+        let mut trials = trials;
+        trials.sort_by(|left, right| right.1.log_ratio.total_cmp(&left.1.log_ratio));
         looked();
         if looks == 0 {
-            first.clone_from(&trials);
+            first = trials.iter().map(|(_, trial)| trial.clone()).collect();
         }
         looks += 1;
         known = promise(&trials).collect();
         promising.extend(known.clone());
-        for trial in &trials {
+        for (_, trial) in &trials {
             floor_square = floor_square.min(trial.held_out.mean_square());
         }
         if std::env::var_os("PAM_DEBUG").is_some() {
-            eprintln!("look {looks}: {:?} bent {:.4} best {:.4} floor² {:.4}", best.state.guesses, bent.held_out.mean_square(), best.held_out.mean_square(), floor_square);
-            for t in trials.iter().take(25) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
+            eprintln!("look {looks}: {:?} before {:?} best {:.4} floor² {:.4}", best.state.guesses, before.iter().map(|b| b.held_out.mean_square()).collect::<Vec<_>>(), best.held_out.mean_square(), floor_square);
+            for (k, t) in trials.iter().take(8) { eprintln!("   {k} {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
         }
-        let Some(chosen) = trials.into_iter().find(|trial| worth(trial, before, &whole, floor_square, limits)) else {
-            break;
-        };
+        let chosen = trials
+            .into_iter()
+            .find(|(map, trial)| worth(trial, &before[*map], &whole, floor_square, limits));
+        let Some((_, chosen)) = chosen else { break };
         let Some(next) = settle(&mapped, &best, &chosen) else { break };
         best = next;
         if looks > 1 {
@@ -236,10 +264,11 @@ fn static_effect(
 }
 
 /// The trials that come anywhere near the best: what may stand in the place of what was taken.
-fn promise(trials: &[Trial]) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
-    let best = trials.first().map_or(0.0, |trial| trial.log_ratio);
+fn promise(trials: &[(usize, Trial)]) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
+    let best = trials.first().map_or(0.0, |(_, trial)| trial.log_ratio);
     trials
         .iter()
+        .map(|(_, trial)| trial)
         .filter(move |trial| trial.log_ratio > (0.15 * best).max(0.3))
         .map(|trial| (trial.guess.id(), trial.guess.shape.clone()))
 }

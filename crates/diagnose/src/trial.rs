@@ -36,6 +36,17 @@ const EVENT_CHARGE: f64 = 0.8;
 /// else of that shape is likelier.
 const PRESSED_CHARGE: f64 = 0.7;
 
+/// Share of its evidence that an effect keeps whose shape has shrunk to the least that its page has: what is smaller still
+/// is no longer that effect.
+const DEGENERATE_CHARGE: f64 = 0.2;
+
+/// Whether a shape has shrunk to the lower end of a range that does not begin at zero.
+fn is_degenerate(guess: &Guess) -> bool {
+    let mut shapes = guess.effect.shape().iter().zip(&guess.shape);
+    guess.effect.kind() != Kind::Event
+        && shapes.any(|(parameter, &value)| parameter.range.0 > 0.0 && value <= 1.05 * parameter.range.0)
+}
+
 /// Shapes that were best when a candidate was last looked at, by its id.
 pub type Shapes = BTreeMap<&'static str, Vec<f64>>;
 
@@ -115,7 +126,8 @@ pub fn among(
             let (held_out, is_pressed) = weigh(setting, state, &guess)?;
             let looked_for = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
             let strained = if is_pressed { PRESSED_CHARGE } else { 1.0 };
-            let log_ratio = looked_for * strained * before.log_ratio(&held_out);
+            let degenerate = if is_degenerate(&guess) { DEGENERATE_CHARGE } else { 1.0 };
+            let log_ratio = looked_for * strained * degenerate * before.log_ratio(&held_out);
             Some(Trial { guess, mean_square, held_out, log_ratio })
         })
         .collect();

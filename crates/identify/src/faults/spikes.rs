@@ -2,7 +2,7 @@
 //!
 //! One such sample among ten thousand makes an RMSE of tens of newtons, and looks like physics to whom looks at sums. A
 //! sample is a spike where it is off the median of those around it by far more than these are off one another, and by a good
-//! part of the range of the channel; nothing that has mass moves so. Spikes are not counted; one that leaps by more than all
+//! part of the range of the channel; nothing that has mass moves so. Spikes are not counted; one that leaps by several times what all
 //! others range makes every range meaningless, and the recording is refused.
 
 use std::io;
@@ -21,6 +21,8 @@ const TIMES_SPREAD: f64 = 15.0;
 const SHARE_OF_RANGE: f64 = 0.15;
 /// How often the noise: a channel that is held has no range but its noise.
 const TIMES_NOISE: f64 = 20.0;
+/// How often the range of all others a spike leaps that makes every range of the recording meaningless.
+const GROSS: f64 = 3.0;
 /// Spikes that are named.
 const NAMED: usize = 3;
 
@@ -61,7 +63,7 @@ struct Spike {
     channel: &'static str,
     /// Its value and place, in words.
     words: String,
-    /// Whether it leaps by more than all others range, so that no range of the recording means anything.
+    /// Whether it leaps by several times what all others range, so that no range of the recording means anything.
     is_gross: bool,
 }
 
@@ -91,7 +93,7 @@ fn all(recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<Spik
         if least <= 0.0 {
             continue;
         }
-        let gross = range.max(least);
+        let gross = GROSS * range.max(least);
         let mut found = Vec::new();
         for chunk in recording.samples.chunks() {
             let chunk = chunk?;
