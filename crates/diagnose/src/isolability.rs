@@ -166,7 +166,7 @@ fn typical(id: &str) -> Option<&'static Typical> {
 /// What a refit leaves of each form of `guess`.
 fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess: &Guess) -> Vec<Vec<f64>> {
     if guess.only_adds() {
-        let ground = Ground { track: setting.track, columns: setting.columns, only: None };
+        let ground = Ground { track: setting.track, columns: setting.columns, only: None, slopes: true };
         let k = guess.amplitudes().len();
         let columns = ground.more_columns(&state.sheet, guess, &state.model);
         let sizes = typical(guess.id()).map_or(&[][..], |typical| typical.amplitudes);

@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 use pam_optim::summary::{BLOCK_ROWS, Summary};
+use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::nuisance::Nuisance;
@@ -246,6 +247,20 @@ impl Normal {
 /// `rowsᵀ rows`, of rows of `width` values.
 fn products_of(rows: &[f64], width: usize) -> DMatrix<f64> {
     let mut sums = vec![0.0; width * width];
+    // The widest vectors that the processor has; nothing is fused, so that every processor gives the same bits.
+    Arch::new().dispatch(|| sum_products(rows, width, &mut sums));
+    let mut out = DMatrix::zeros(width, width);
+    for i in 0..width {
+        for j in i..width {
+            out[(i, j)] = sums[i * width + j];
+            out[(j, i)] = sums[i * width + j];
+        }
+    }
+    out
+}
+
+#[inline(always)]
+fn sum_products(rows: &[f64], width: usize, sums: &mut [f64]) {
     for row in rows.chunks_exact(width) {
         for i in 0..width {
             let value = row[i];
@@ -257,14 +272,6 @@ fn products_of(rows: &[f64], width: usize) -> DMatrix<f64> {
             }
         }
     }
-    let mut out = DMatrix::zeros(width, width);
-    for i in 0..width {
-        for j in i..width {
-            out[(i, j)] = sums[i * width + j];
-            out[(j, i)] = sums[i * width + j];
-        }
-    }
-    out
 }
 
 impl Extended<'_> {

@@ -63,6 +63,7 @@ impl<'a> Question<'a> {
             only: None,
             nuisance,
             floor_square: self.limits.sensor_floor_n.powi(2),
+            goes_on: true,
         }
     }
 

@@ -287,7 +287,7 @@ pub(crate) mod tests {
             let mut weights = given.columns.weights(&parameters).to_vec();
             weights.extend(effects.iter().flat_map(|(_, _, amplitudes)| amplitudes.iter()));
             let sheet =
-                Ground { track: &given.track, columns: &given.columns, only: None }.sheet(&guesses, &given.model);
+                Ground { track: &given.track, columns: &given.columns, only: None, slopes: true }.sheet(&guesses, &given.model);
             for (at, instant) in given.track.instants.iter_mut().enumerate() {
                 instant.force_n = sheet.force_n(at, &weights);
                 instant.moment.force_n = instant.force_n;
@@ -309,6 +309,7 @@ pub(crate) mod tests {
                 only: None,
                 nuisance: &crate::nuisance::NONE,
         floor_square: 0.0,
+        goes_on: true,
             }
         }
     }

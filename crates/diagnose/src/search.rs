@@ -335,7 +335,10 @@ fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
     if best.state.guesses.iter().all(|guess| guess.shape.is_empty()) {
         return Some(best);
     }
-    let plain = judged(setting, refine_all(setting, best.state)?)?;
+    let sampled = setting.sampled();
+    let refined = refine_all(&sampled, sampled.fit_near(best.state.guesses.clone(), &best.state)?)?;
+    let plain = judged(setting, setting.fit_near(refined.guesses, &best.state)?)?;
+    let plain = if plain.held_out.mean_square() < best.held_out.mean_square() { plain } else { best };
     let detailed = detailed(setting, &plain.state).and_then(|state| judged(setting, state));
     Some(match detailed {
         Some(detailed) if detailed.held_out.mean_square() < plain.held_out.mean_square() => detailed,
@@ -409,7 +412,7 @@ fn detailed(setting: &Setting<'_>, state: &State) -> Option<State> {
     for _ in 0..DETAIL_SWEEPS {
         thin = refine_all(&sampled, thin)?;
     }
-    refine_all(setting, setting.fit_near(thin.guesses, state)?)
+    setting.fit_near(thin.guesses, state)
 }
 
 /// Refines the shapes of all effects, each with the others as they are.

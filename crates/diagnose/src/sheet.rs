@@ -41,6 +41,8 @@ pub struct Ground<'a> {
     pub columns: &'a ForceColumns,
     /// Instants whose columns are wanted, the others' are zero; none where all are.
     pub only: Option<&'a [bool]>,
+    /// Whether the slopes of the base are wanted where no effect of the hypothesis needs them.
+    pub slopes: bool,
 }
 
 impl Ground<'_> {
@@ -81,6 +83,7 @@ impl Ground<'_> {
         }
         shift(seen, &self.track.instants[range.clone()], delays_s);
         let mut memories = start(guesses, model);
+        let slopes = self.slopes || guesses.iter().any(|guess| guess.effect.uses_slopes());
         let mut last = None;
         for (((now, row), here), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width)).zip(base).zip(range) {
             let wanted = self.only.is_none_or(|only| only[at]);
@@ -101,7 +104,11 @@ impl Ground<'_> {
             // Between the wanted instants what the base was at the last one will do.
             *here = match last {
                 Some(last) if !wanted => last,
-                _ => Base::of(model, now.pressure_pa, now.length_m),
+                _ if slopes => Base::of(model, now.pressure_pa, now.length_m),
+                _ => {
+                    let terms = model.terms(now.pressure_pa, now.length_m, 0.0);
+                    Base::from_terms(model, now.pressure_pa, now.length_m, &terms)
+                }
             };
             last = Some(*here);
             let mut at = N_COLUMNS;

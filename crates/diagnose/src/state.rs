@@ -39,6 +39,8 @@ pub struct Setting<'a> {
     pub nuisance: &'a Nuisance,
     /// What the sensors leave, in N².
     pub floor_square: f64,
+    /// Whether further effects are tried on top of its fits.
+    pub goes_on: bool,
 }
 
 /// A hypothesis with its joint fit.
@@ -153,6 +155,11 @@ impl<'a> Setting<'a> {
         Self { only: Some(&self.track.sampled), ..*self }
     }
 
+    /// The same for fits of which only what they leave is wanted.
+    pub fn ending(&self) -> Self {
+        Self { goes_on: false, ..*self }
+    }
+
     /// The same beside other nuisances.
     pub fn beside<'b>(&'b self, nuisance: &'b Nuisance) -> Setting<'b> {
         Setting { nuisance, ..*self }
@@ -164,7 +171,7 @@ impl<'a> Setting<'a> {
     }
 
     pub(crate) fn ground(&self) -> Ground<'_> {
-        Ground { track: self.track, columns: self.columns, only: self.only }
+        Ground { track: self.track, columns: self.columns, only: self.only, slopes: self.goes_on }
     }
 
     fn joint<'b>(&'b self, ranges: &'b [(f64, f64)]) -> Joint<'b> {

@@ -17,14 +17,14 @@ use crate::knocks::Knocks;
 /// Time between instants, in s, as long as there are fewer than [`MOST_INSTANTS`].
 const PERIOD_S: f64 = 0.02;
 /// Instants of all recordings together, at most; longer recordings are thinned further.
-const MOST_INSTANTS: usize = 160_000;
+const MOST_INSTANTS: usize = 60_000;
 /// Blocks that the recordings together are cut into, about.
 const BLOCKS: usize = 32;
 
 /// Instants that a search for the best shape looks at, at least, where there are as many.
-const LEAST_SAMPLED: usize = 2500;
+const LEAST_SAMPLED: usize = 3000;
 /// It looks at one instant in so many, at most.
-const MOST_SPARSE: usize = 4;
+const MOST_SPARSE: usize = 20;
 
 /// Groups of blocks that are held out in turn.
 pub const FOLDS: usize = 8;

@@ -157,7 +157,7 @@ pub fn mean_square(setting: &Setting<'_>, state: &State, guess: &Guess) -> Optio
     if guess.only_adds() {
         setting.fit_more(state, guess).map(|fit| fit.mean_square)
     } else {
-        Some(with(setting, state, guess)?.fit.mean_square)
+        Some(with(&setting.ending(), state, guess)?.fit.mean_square)
     }
 }
 
@@ -182,14 +182,16 @@ pub fn refine(setting: &Setting<'_>, state: &State, guess: &Guess, cost: f64, sw
             let mut factor = step;
             // Each round looks to either side of the best so far, at half the distance of the round before.
             for _ in 0..3 {
-                for way in [-1.0, 1.0] {
+                let tried = |way: f64| {
                     let mut trial = best.1.clone();
                     trial.shape[index] =
                         (best.1.shape[index] + way * factor).clamp(parameter.range.0, parameter.range.1);
-                    if let Some(cost) = mean_square(setting, state, &trial)
-                        && cost < best.0
-                    {
-                        best = (cost, trial);
+                    mean_square(setting, state, &trial).map(|cost| (cost, trial))
+                };
+                let (below, above) = rayon::join(|| tried(-1.0), || tried(1.0));
+                for trial in [below, above].into_iter().flatten() {
+                    if trial.0 < best.0 {
+                        best = trial;
                     }
                 }
                 factor *= 0.5;

@@ -71,7 +71,7 @@ fn separation(
     explanations: &[Explanation],
 ) -> Separation {
     let rehearsal = Rehearsal::of(takes, reach);
-    let ground = Ground { track: &rehearsal.track, columns, only: None };
+    let ground = Ground { track: &rehearsal.track, columns, only: None, slopes: true };
     let setting = Setting {
         track: &rehearsal.track,
         columns,
@@ -81,6 +81,7 @@ fn separation(
         only: None,
         nuisance: &crate::nuisance::NONE,
         floor_square: 0.0,
+        goes_on: true,
     };
     let runs: Vec<Run> = explanations
         .par_iter()
