@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
 PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench
 
-.PHONY: all install test check bench compare tables tutorial hard-use odd-inputs fuzz datasets recordings prove prove-real clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial hard-use odd-inputs fuzz datasets recordings prove prove-worlds prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -102,6 +102,18 @@ prove: SEED ?= $(shell date +%s)
 prove: cargo-is-there
 	@$(CARGO) build --release --locked --workspace --bins
 	$(BIN)/prove --cases $(CASES) --seed $(SEED) $(if $(filter 400,$(CASES)),--record scripts/proof)
+
+# The same question to worlds that share nothing with the fitter, below out/worlds; 100 cases where CASES is not given.
+# HALF=choose is for whoever chooses constants, HALF=report for outcomes.
+HALF ?= report
+prove-worlds: CASES := $(if $(filter file,$(origin CASES)),100,$(CASES))
+prove-worlds: SEED ?= $(shell date +%s)
+prove-worlds: WORLDS := $(OUT)/worlds
+prove-worlds: cargo-is-there
+	@$(CARGO) build --release --locked --workspace --bins
+	@rm -rf $(WORLDS)
+	$(BIN)/worlds --out $(WORLDS) --cases $(CASES) --seed $(SEED) --half $(HALF)
+	$(BIN)/score-worlds $(WORLDS) --bin $(BIN) --json $(WORLDS)/scores.json
 
 # The same question to two real muscles, where their recordings are (make recordings, or PAM_RECORDINGS=folder).
 prove-real: cargo-is-there

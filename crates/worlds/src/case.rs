@@ -1,5 +1,6 @@
 //! A case: a world, what is concealed in it, and how large that is beside the sensors.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -12,8 +13,8 @@ use crate::place::Place;
 use crate::protocol::{Path, path};
 use crate::sensors::Log;
 use crate::severity::{Scales, cylinder_misfit_n, residuals, rms_difference};
-use crate::simulate::{Subject, Trace, run};
-use crate::world::{Attributes, Bench, Demands, World};
+use crate::simulate::{Known, Subject, Trace, run};
+use crate::world::{Attributes, Bench, Demands, Unmade, World};
 
 /// Kind of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -82,8 +83,12 @@ pub struct Truth {
     pub tare_n: f64,
     /// Least and most true force of the estimation recordings, N.
     pub force_range_n: (f64, f64),
-    /// Worlds that were drawn and given up because the effect could not be brought to show within its range.
+    /// Worlds that were drawn and given up.
     pub redraws: usize,
+    /// Of these, how many for which reason.
+    pub redraws_by_reason: BTreeMap<Unmade, usize>,
+    /// Effects, or nameless forms, that were given up for others, since no world showed them.
+    pub given_up: Vec<&'static str>,
 }
 
 /// A case, ready to be written.
@@ -116,8 +121,20 @@ fn kinds(request: &Request) -> Vec<CaseKind> {
     request.kind.map_or(kinds, |kind| vec![kind; request.cases])
 }
 
-/// Effects of a case: the catalogue is gone through evenly, in an order of its own per seed.
-fn concealed(request: &Request, kinds: &[CaseKind], index: usize, dice: &mut Dice) -> Vec<&'static Form> {
+/// What an effect is given up as: its id, or its form if it has none.
+fn label(form: &Form) -> &'static str {
+    if form.id == "nameless" { form.form } else { form.id }
+}
+
+/// Effects of a case: the catalogue is gone through evenly, in an order of its own per seed. An effect that was given up is
+/// replaced by any other.
+fn concealed(
+    request: &Request,
+    kinds: &[CaseKind],
+    index: usize,
+    given_up: &[&'static str],
+    dice: &mut Dice,
+) -> Vec<&'static Form> {
     let before = kinds[..index].iter().filter(|kind| **kind == kinds[index]).count();
     let all = ids();
     let mut order: Vec<usize> = (0..all.len()).collect();
@@ -127,19 +144,35 @@ fn concealed(request: &Request, kinds: &[CaseKind], index: usize, dice: &mut Dic
             NAMED.iter().filter(|form| form.id == id && form.half == request.half).collect();
         forms[dice.between(0, forms.len() - 1)]
     };
-    let first = all[order[before % all.len()]];
+    let first = |dice: &mut Dice| {
+        let mut first = all[order[before % all.len()]];
+        while given_up.contains(&first) {
+            first = *dice.pick(&all);
+        }
+        first
+    };
     match kinds[index] {
         CaseKind::Nothing => Vec::new(),
-        CaseKind::One => vec![of(first, dice)],
-        CaseKind::Two => loop {
-            let second = *dice.pick(&all);
-            if second != first {
-                break vec![of(first, dice), of(second, dice)];
+        CaseKind::One => {
+            let first = first(dice);
+            vec![of(first, dice)]
+        }
+        CaseKind::Two => {
+            let first = first(dice);
+            loop {
+                let second = *dice.pick(&all);
+                if second != first && !given_up.contains(&second) {
+                    break vec![of(first, dice), of(second, dice)];
+                }
             }
-        },
+        }
         CaseKind::Nameless => {
             let forms: Vec<&'static Form> = NAMELESS.iter().filter(|form| form.half == request.half).collect();
-            vec![forms[before % forms.len()]]
+            let mut form = forms[before % forms.len()];
+            while given_up.contains(&form.form) {
+                form = *dice.pick(&forms);
+            }
+            vec![form]
         }
     }
 }
@@ -148,12 +181,16 @@ struct Stage<'a> {
     world: &'a World,
     paths: Vec<Path>,
     subject: Subject<'a>,
+    /// Static force along the estimation recordings.
+    known: Vec<Vec<Known>>,
     log_seed: u64,
     setting: Setting,
     plain: Vec<Log>,
     plain_residuals: Vec<f64>,
     scales: Scales,
     floor_n: f64,
+    /// Steps simulated so far.
+    work: Cell<usize>,
 }
 
 fn log_all(
@@ -175,6 +212,10 @@ fn log_all(
         .collect()
 }
 
+fn steps(paths: &[Path]) -> usize {
+    paths.iter().map(|path| path.length_m.len()).sum()
+}
+
 impl<'a> Stage<'a> {
     fn new(world: &'a World, dice: &mut Dice) -> Self {
         let mut path_dice = dice.fork();
@@ -191,15 +232,17 @@ impl<'a> Stage<'a> {
             start_seed: dice.between(0, 1 << 40) as u64,
         };
         let log_seed = dice.between(0, 1 << 40) as u64;
-        let traces = run(&subject, &paths, Vec::new());
-        let plain = log_all(world, &paths, &traces, &[], log_seed, true);
         let estimation = world.estimation;
+        let known: Vec<Vec<Known>> = paths[..estimation].iter().map(|path| subject.along(path)).collect();
+        let work = 2 * steps(&paths[..estimation]) + steps(&paths);
+        let traces = run(&subject, &paths[..estimation], &known, Vec::new());
+        let plain = log_all(world, &paths, &traces, &[], log_seed, true);
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
         };
         let lengths = range(&mut paths[..estimation].iter().flat_map(|path| path.length_m.iter().copied()));
         let pressures_pa = range(&mut paths[..estimation].iter().flat_map(|path| path.pressure_pa.iter().copied()));
-        let forces_n = range(&mut plain[..estimation].iter().flat_map(|log| log.true_force_n.iter().copied()));
+        let forces_n = range(&mut plain.iter().flat_map(|log| log.true_force_n.iter().copied()));
         let travel_m = paths[..estimation]
             .iter()
             .map(|path| path.length_m.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum::<f64>())
@@ -219,23 +262,38 @@ impl<'a> Stage<'a> {
         };
         let half = |(low, high): (f64, f64), least: f64| (0.5 * (low + high), (0.5 * (high - low)).max(least));
         let scales = Scales { pressure: half(pressures_pa, 2e4), length: half(lengths, 2e-3) };
-        let plain_residuals = residuals(&plain[..estimation], &plain[..estimation], scales);
-        let count: usize = plain[..estimation].iter().map(|log| log.time_s.len()).sum();
-        let sum: f64 = plain[..estimation].iter().map(|log| log.floor_n2 * log.time_s.len() as f64).sum();
+        let plain_residuals = residuals(&plain, &plain, scales);
+        let count: usize = plain.iter().map(|log| log.time_s.len()).sum();
+        let sum: f64 = plain.iter().map(|log| log.floor_n2 * log.time_s.len() as f64).sum();
         let floor_n = (sum / count as f64).sqrt();
-        Self { world, paths, subject, log_seed, setting, plain, plain_residuals, scales, floor_n }
+        Self {
+            world,
+            paths,
+            subject,
+            known,
+            log_seed,
+            setting,
+            plain,
+            plain_residuals,
+            scales,
+            floor_n,
+            work: Cell::new(work),
+        }
     }
 
     /// Logs of the first recordings with something concealed; without noise where only the truth is of interest.
     fn seen(&self, built: Vec<Built>, recordings: usize, noisy: bool) -> Vec<Log> {
+        // The root behind a spring takes many looks at the muscle.
+        let looks = if built.iter().any(|one| one.compliance.is_some()) { 12 } else { 1 };
+        self.work.set(self.work.get() + looks * steps(&self.paths[..recordings]));
         let delays: Vec<Option<crate::forms::Delay>> = built.iter().map(|one| one.delay).collect();
-        let traces = run(&self.subject, &self.paths[..recordings], built);
+        let traces = run(&self.subject, &self.paths[..recordings], &self.known, built);
         log_all(self.world, &self.paths, &traces, &delays, self.log_seed, noisy)
     }
 
     fn severity(&self, logs: &[Log]) -> f64 {
         let estimation = self.world.estimation;
-        let with = residuals(&logs[..estimation], &self.plain[..estimation], self.scales);
+        let with = residuals(&logs[..estimation], &self.plain, self.scales);
         rms_difference(&with, &self.plain_residuals) / self.floor_n
     }
 
@@ -243,14 +301,15 @@ impl<'a> Stage<'a> {
         (form.build)(&mut form_dice.clone(), u, &self.setting)
     }
 
-    /// Place in the published range, 0…1, at which a form alone reaches about the severity aimed at.
-    fn search(&self, form: &Form, form_dice: &Dice, aim: f64) -> Option<(f64, f64)> {
-        let severity =
-            |u: f64| self.severity(&self.seen(vec![self.build(form, form_dice, u)], self.world.estimation, false));
-        let top = severity(1.0);
-        if !top.is_finite() || top < SEVERITIES.0 {
-            return None;
-        }
+    /// Severity of a form alone at a place of its published range, 0…1.
+    fn severity_at(&self, form: &Form, form_dice: &Dice, u: f64) -> f64 {
+        self.severity(&self.seen(vec![self.build(form, form_dice, u)], self.world.estimation, false))
+    }
+
+    /// Place in the published range, 0…1, at which a form alone reaches about the severity aimed at; `top` is what it
+    /// reaches at the end of the range.
+    fn search(&self, form: &Form, form_dice: &Dice, aim: f64, top: f64) -> Option<(f64, f64)> {
+        let severity = |u: f64| self.severity_at(form, form_dice, u);
         if top <= aim {
             return Some((1.0, top));
         }
@@ -289,6 +348,18 @@ fn slack_share(logs: &[Log]) -> f64 {
 
 /// Attempts after which other forms are drawn as well.
 const ATTEMPTS: usize = 12;
+/// Attempts after which an effect is given up for another.
+const MOST_REDRAWS: usize = 40;
+/// Steps of simulation after which it is given up as well: about a second. Counted, since a clock would draw other cases on
+/// another computer. A third of it is left for every effect after the first.
+const MOST_WORK: usize = 6_000_000;
+
+/// Why no case came of a world, the form to blame if one is, and the steps simulated.
+struct Failure {
+    why: Unmade,
+    blamed: Option<&'static Form>,
+    work: usize,
+}
 
 impl Case {
     /// Draws case `index` of a request.
@@ -298,45 +369,88 @@ impl Case {
             Half::Choose => 1,
             Half::Report => 2,
         };
-        let mut redraws = 0;
-        let mut forms = Vec::new();
-        for attempt in 0.. {
-            let mut dice = Dice::new(request.seed, (half * 1_000_000 + index as u64) * 1000 + attempt as u64);
-            if attempt % ATTEMPTS == 0 {
-                forms = concealed(request, &kinds, index, &mut dice.fork());
+        let mut by_reason: BTreeMap<Unmade, usize> = BTreeMap::new();
+        let mut given_up: Vec<&'static str> = Vec::new();
+        let mut forms: Vec<&'static Form> = Vec::new();
+        let mut blamed: BTreeMap<&'static str, usize> = BTreeMap::new();
+        let (mut tried, mut work) = (0, 0);
+        // Streams of one case, before those of the next begin.
+        for attempt in 0..1000 {
+            let mut dice = Dice::new(request.seed, (half * 1_000_000 + index as u64) * 1000 + attempt);
+            let most = if given_up.is_empty() { MOST_WORK } else { MOST_WORK / 3 };
+            if !forms.is_empty() && (tried > MOST_REDRAWS || work > most) {
+                let worst =
+                    forms.iter().map(|form| label(form)).rev().max_by_key(|name| blamed.get(name).unwrap_or(&0));
+                given_up.extend(worst);
+                blamed.clear();
+                (tried, work) = (0, 0);
             }
+            if tried % ATTEMPTS == 0 {
+                forms = concealed(request, &kinds, index, &given_up, &mut dice.fork());
+            }
+            tried += 1;
             let bench = request.bench.unwrap_or(if index.is_multiple_of(2) { Bench::Lumped } else { Bench::Slices });
-            let Some(mut world) = World::draw(&mut dice, bench, &Demands::of(&forms)) else { continue };
-            match Self::stage(kinds[index], index, &forms, &mut world, &mut dice) {
-                Some(mut case) => {
-                    case.truth.redraws = redraws;
+            let outcome = match World::draw(&mut dice, bench, &Demands::of(&forms)) {
+                Ok(mut world) => {
+                    let left = most.saturating_sub(work);
+                    Self::stage((kinds[index], index), &forms, &mut world, &mut dice, left)
+                }
+                Err(why) => Err(Failure { why, blamed: None, work: 0 }),
+            };
+            match outcome {
+                Ok(mut case) => {
+                    case.truth.redraws = by_reason.values().sum();
+                    case.truth.redraws_by_reason = by_reason;
+                    case.truth.given_up = given_up;
                     return case;
                 }
-                None => {
-                    redraws += 1;
+                Err(failure) => {
+                    *by_reason.entry(failure.why).or_default() += 1;
+                    work += failure.work;
+                    if let Some(form) = failure.blamed {
+                        *blamed.entry(label(form)).or_default() += 1;
+                    }
                 }
             }
         }
-        unreachable!("the loop has no end")
+        unreachable!("some effect shows within a thousand worlds");
     }
 
+    /// Conceals forms in a world; within `most_work` steps it is tried anew with less contraction.
     fn stage(
-        kind: CaseKind,
-        index: usize,
+        (kind, index): (CaseKind, usize),
         forms: &[&'static Form],
         world: &mut World,
         dice: &mut Dice,
-    ) -> Option<Self> {
+        most_work: usize,
+    ) -> Result<Self, Failure> {
         let may_be_slack = forms.iter().any(|form| form.id == "slack");
         let stage_dice = dice.fork();
         let aims: Vec<f64> = forms.iter().map(|_| dice.log_uniform(SEVERITIES.0 * 1.1, SEVERITIES.1)).collect();
         let form_dice: Vec<Dice> = forms.iter().map(|_| dice.fork()).collect();
         let caliper_seed = dice.between(0, 1 << 40) as u64;
+        let mut work = 0;
         for _ in 0..5 {
+            if work > most_work {
+                return Err(Failure { why: Unmade::Work, blamed: None, work });
+            }
             let stage = Stage::new(world, &mut stage_dice.clone());
+            let unseen = |form: &&'static Form| {
+                let work = work + stage.work.get();
+                Failure { why: Unmade::NotSeen, blamed: Some(form), work }
+            };
+            // Whether each can show at all, before time goes into how large it is to be.
+            let mut tops = Vec::new();
+            for (form, dice) in forms.iter().zip(&form_dice) {
+                let top = stage.severity_at(form, dice, 1.0);
+                if !top.is_finite() || top < SEVERITIES.0 {
+                    return Err(unseen(form));
+                }
+                tops.push(top);
+            }
             let mut found = Vec::new();
-            for ((form, dice), &aim) in forms.iter().zip(&form_dice).zip(&aims) {
-                found.push(stage.search(form, dice, aim)?);
+            for (((form, dice), &aim), &top) in forms.iter().zip(&form_dice).zip(&aims).zip(&tops) {
+                found.push(stage.search(form, dice, aim, top).ok_or_else(|| unseen(form))?);
             }
             let built = || -> Vec<Built> {
                 forms
@@ -346,13 +460,14 @@ impl Case {
                     .map(|((form, dice), &(u, _))| stage.build(form, dice, u))
                     .collect()
             };
-            let logs = if forms.is_empty() { stage.plain.clone() } else { stage.seen(built(), world.plan.len(), true) };
+            let logs = stage.seen(built(), world.plan.len(), true);
+            work += stage.work.get();
             if !may_be_slack && slack_share(&logs) > SLACK_SHARE {
                 // Less contraction everywhere keeps the muscle taut with the effect as well.
                 world.region.taut.iter_mut().for_each(|most| *most -= 0.015);
                 world.region.most -= 0.01;
                 if world.region.most < 0.05 {
-                    return None;
+                    return Err(Failure { why: Unmade::Slack, blamed: None, work });
                 }
                 continue;
             }
@@ -367,7 +482,7 @@ impl Case {
             };
             let cylinder = LumpedMuscle::new(&world.muscle);
             let bladder_n = |length_m: f64| cylinder.parts(0.0, length_m).bladder_n;
-            let cylinder_misfit_n = cylinder_misfit_n(&stage.plain[..world.estimation], stage.scales, bladder_n);
+            let cylinder_misfit_n = cylinder_misfit_n(&stage.plain, stage.scales, bladder_n);
             let mut attributes = world.attributes.clone();
             attributes.cylinder_misfit = match cylinder_misfit_n / floor_n {
                 below if below < 0.5 => "below-half-floor",
@@ -399,9 +514,11 @@ impl Case {
                 tare_n: world.sensors.tare_n,
                 force_range_n: setting.forces_n,
                 redraws: 0,
+                redraws_by_reason: BTreeMap::new(),
+                given_up: Vec::new(),
             };
-            return Some(Self { truth, world: world.clone(), logs, caliper_seed });
+            return Ok(Self { truth, world: world.clone(), logs, caliper_seed });
         }
-        None
+        Err(Failure { why: Unmade::Slack, blamed: None, work })
     }
 }

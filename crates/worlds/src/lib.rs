@@ -16,7 +16,8 @@
 //!
 //! # Severity
 //! An effect is made as large as drawn beside what the sensors add, within its published range, measured after a linear refit
-//! of a generic static map ([`severity`]). A world in which it cannot show is drawn anew and counted.
+//! of a generic static map ([`severity`]). A world in which it cannot show is drawn anew and counted by reason;
+//! after 40 of them, or as many steps as take about a second, another effect is concealed instead.
 //!
 //! Modules in reading order: [`draw`], [`curve`], [`rubber`], [`muscle`], [`lumped`], [`slices`], [`friction`], [`mechanism`],
 //! [`place`], [`forms`], [`catalogue`], [`protocol`], [`simulate`], [`sensors`], [`severity`], [`world`], [`case`], [`mod@write`].

@@ -4,7 +4,7 @@ use crate::draw::Dice;
 use crate::forms::{Built, Compliance};
 use crate::friction::Friction;
 use crate::mechanism::{Mechanism, Moment};
-use crate::muscle::StaticForce;
+use crate::muscle::{Parts, StaticForce};
 use crate::protocol::Path;
 
 /// What happened along one path, at its fine step.
@@ -35,6 +35,25 @@ pub struct Subject<'a> {
     pub continuous: bool,
     /// Seed of the friction's starting states.
     pub start_seed: u64,
+}
+
+/// Static force and sliding friction where the rig is, for steps in which a world adds nothing to pressure and length.
+#[derive(Debug, Clone, Copy)]
+pub struct Known {
+    parts: Parts,
+    sliding_n: f64,
+}
+
+impl Subject<'_> {
+    fn at(&self, pressure_pa: f64, length_m: f64) -> Known {
+        let parts = self.force.parts(pressure_pa, length_m);
+        Known { parts, sliding_n: self.friction.amplitude.sliding_n(pressure_pa, parts.radius_m, length_m) }
+    }
+
+    /// What holds along a path, so that runs with one effect after another need not find it anew.
+    pub fn along(&self, path: &Path) -> Vec<Known> {
+        path.pressure_pa.iter().zip(&path.length_m).map(|(&p, &l)| self.at(p, l)).collect()
+    }
 }
 
 struct Run<'a> {
@@ -121,6 +140,7 @@ impl Run<'_> {
         dt_s: f64,
         recording: usize,
         recording_time_s: f64,
+        known: Option<&Known>,
     ) -> (f64, f64, f64) {
         let last = self.last;
         self.time_s += dt_s;
@@ -152,9 +172,12 @@ impl Run<'_> {
         now.contraction = 1.0 - now.length_m / self.subject.rest_m;
         now.speed_m_per_s = last.map_or(0.0, |last| (last.length_m - now.length_m) / dt_s);
         now.acceleration_m_per_s2 = last.map_or(0.0, |last| (now.speed_m_per_s - last.speed_m_per_s) / dt_s);
-        let parts = self.subject.force.parts(now.pressure_pa, now.length_m);
+        let Known { parts, sliding_n } = match known {
+            Some(known) if now.pressure_pa == gauge_pa && now.length_m == encoder_m => *known,
+            _ => self.subject.at(now.pressure_pa, now.length_m),
+        };
         (now.radius_m, now.gas_n, now.bladder_n) = (parts.radius_m, parts.gas_n, parts.bladder_n);
-        now.sliding_n = self.friction.amplitude.sliding_n(now.pressure_pa, parts.radius_m, now.length_m);
+        now.sliding_n = sliding_n;
         if let Some(last) = last {
             self.friction.step(last.length_m - now.length_m, now.pressure_pa - last.pressure_pa, dt_s);
         }
@@ -193,8 +216,8 @@ const BRIDGE_STEPS: usize = 400;
 const BRIDGE_S: f64 = 2.0;
 const REST_S: f64 = 20.0;
 
-/// Runs along all paths in order.
-pub fn run(subject: &Subject, paths: &[Path], built: Vec<Built>) -> Vec<Trace> {
+/// Runs along all paths in order; `known` holds, for the first of them, what [`Subject::along`] found.
+pub fn run(subject: &Subject, paths: &[Path], known: &[Vec<Known>], built: Vec<Built>) -> Vec<Trace> {
     let mut friction = subject.friction.clone();
     let mut compliance = None;
     let mut mechanisms = Vec::new();
@@ -225,7 +248,7 @@ pub fn run(subject: &Subject, paths: &[Path], built: Vec<Built>) -> Vec<Trace> {
                 let share = step as f64 / BRIDGE_STEPS as f64;
                 let gauge_pa = last.gauge_pa + (path.pressure_pa[0] - last.gauge_pa) * share;
                 let encoder_m = last.encoder_m + (path.length_m[0] - last.encoder_m) * share;
-                run.step(gauge_pa, encoder_m, dt_s, recording, -1.0);
+                run.step(gauge_pa, encoder_m, dt_s, recording, -1.0, None);
             }
         }
         let count = path.length_m.len();
@@ -238,8 +261,9 @@ pub fn run(subject: &Subject, paths: &[Path], built: Vec<Built>) -> Vec<Trace> {
         };
         for index in 0..count {
             let time_s = index as f64 * path.dt_s;
+            let known = known.get(recording).map(|known| &known[index]);
             let (force_n, pressure_pa, length_m) =
-                run.step(path.pressure_pa[index], path.length_m[index], path.dt_s, recording, time_s);
+                run.step(path.pressure_pa[index], path.length_m[index], path.dt_s, recording, time_s, known);
             trace.force_n.push(force_n);
             trace.pressure_pa.push(pressure_pa);
             trace.length_m.push(length_m);

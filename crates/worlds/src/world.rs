@@ -62,6 +62,22 @@ pub struct Attributes {
     pub protocols: Vec<Kind>,
 }
 
+/// Why a world was given up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unmade {
+    /// A sliced muscle found no equilibrium.
+    NoEquilibrium,
+    /// The muscle stays taut over too short a stroke.
+    NoStroke,
+    /// The effect did not show within its range.
+    NotSeen,
+    /// The muscle went slack with the effect, however short the stroke.
+    Slack,
+    /// Keeping it taut took more work than a case may.
+    Work,
+}
+
 /// A world, drawn.
 #[derive(Debug, Clone)]
 pub struct World {
@@ -294,8 +310,8 @@ fn draw_plan(dice: &mut Dice, demands: &Demands, rate_hz: f64) -> (Vec<(Kind, f6
 }
 
 impl World {
-    /// Draws a world. None where a sliced muscle finds no equilibrium.
-    pub fn draw(dice: &mut Dice, bench: Bench, demands: &Demands) -> Option<Self> {
+    /// Draws a world, or says why there is none.
+    pub fn draw(dice: &mut Dice, bench: Bench, demands: &Demands) -> Result<Self, Unmade> {
         let muscle = Muscle::draw(dice);
         let (force, wall) = match bench {
             Bench::Lumped => {
@@ -303,7 +319,7 @@ impl World {
                 (StaticForce::Lumped(LumpedMuscle::new(&muscle)), wall.to_owned())
             }
             Bench::Slices => {
-                let sliced = SlicedMuscle::new(&muscle, dice)?;
+                let sliced = SlicedMuscle::new(&muscle, dice).ok_or(Unmade::NoEquilibrium)?;
                 let wall = if sliced.count < 28 { "coarse-slices" } else { "fine-slices" };
                 (StaticForce::Slices(sliced), wall.to_owned())
             }
@@ -327,7 +343,7 @@ impl World {
             bandwidths_hz: (dice.uniform(6.0, 20.0), dice.uniform(2.5, 10.0)),
         };
         if region.most < 0.06 {
-            return None;
+            return Err(Unmade::NoStroke);
         }
         let caliper = [0.0, 1.0, 2.0][dice.weighted(&[0.15, 0.65, 0.2])];
         let continuous = dice.chance(0.6);
@@ -364,6 +380,6 @@ impl World {
         let over = if sensors.rate_hz >= 2000.0 { 1.0 } else { (2000.0 / sensors.rate_hz).ceil().min(4.0) };
         let over = if sensors.rate_hz < 100.0 { (200.0 / sensors.rate_hz).ceil().max(4.0) } else { over };
         let dt_s = 1.0 / (sensors.rate_hz * over);
-        Some(Self { muscle, force, friction, sensors, region, plan, estimation, caliper, continuous, attributes, dt_s })
+        Ok(Self { muscle, force, friction, sensors, region, plan, estimation, caliper, continuous, attributes, dt_s })
     }
 }

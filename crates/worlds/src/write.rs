@@ -128,6 +128,15 @@ mod tests {
     }
 
     #[test]
+    fn an_effect_that_no_world_shows_gives_way_to_another() {
+        let request = Request { seed: 32, cases: 14, half: Half::Choose, bench: None, kind: None };
+        let case = Case::draw(&request, 5);
+        assert_eq!(case.truth.given_up, ["end-taper"]);
+        assert!(case.truth.kind == CaseKind::One && case.truth.concealed[0] != "end-taper", "{:?}", case.truth);
+        assert_eq!(case.truth.redraws, case.truth.redraws_by_reason.values().sum::<usize>());
+    }
+
+    #[test]
     fn what_is_concealed_shows_and_the_muscle_stays_taut() {
         for half in [Half::Choose, Half::Report] {
             let request = Request { seed: 9, cases: 2, half, bench: None, kind: Some(CaseKind::One) };
