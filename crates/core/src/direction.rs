@@ -456,8 +456,7 @@ mod tests {
     use rand::SeedableRng;
     use rand_distr::{Distribution, Normal};
 
-    const THRESHOLDS: Thresholds =
-        Thresholds { length_m: 150e-6, pressure_pa: 2e3, standstill: Standstill::AT_ONCE };
+    const THRESHOLDS: Thresholds = Thresholds { length_m: 150e-6, pressure_pa: 2e3, standstill: Standstill::AT_ONCE };
 
     /// ±1, ±2 where unsettled, 0 where unknown.
     fn marks_under(standstill: Standstill, pressure_pa: &[f64], length_m: &[f64]) -> Vec<i8> {

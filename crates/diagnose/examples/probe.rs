@@ -22,7 +22,7 @@ fn main() {
         Limits { max_effects: 4, excluded: Vec::new(), matters_above_n: None, sensor_floor_n: model.fit.noise_floor_n };
     let question = Question::new(&prepared, &model, limits);
     let Answer { track, found, knocks, sizes } = question.answer(track, &|| {}).unwrap();
-    let setting = question.setting(&track);
+    let setting = question.setting(&track, &found.nuisance);
     println!(
         "base {:.3} N, floor {:.3} N, sensor floor {:.3} N",
         found.base.held_out.mean_square().sqrt(),

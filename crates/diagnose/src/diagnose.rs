@@ -18,8 +18,8 @@ use crate::isolability::isolability;
 use crate::joint::HeldOut;
 use crate::knocks::{self, Knocks};
 use crate::laws;
-use crate::nuisance::MAP_ID;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
+use crate::nuisance::MAP_ID;
 use crate::question::{Answer, Question};
 use crate::regions::{Place, concentrated};
 use crate::search::{Found, Limits, chance};
@@ -233,10 +233,11 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
 fn map_entry(map: &Term) -> EffectEntry {
     let shapes = map.effect.shape().iter().map(|shape| (shape.name, shape.unit));
     let amplitudes = map.effect.amplitudes().iter().map(|amplitude| (amplitude.name, amplitude.unit));
-    let parameters = shapes.chain(amplitudes).zip(map.shape.iter().chain(&map.amplitudes)).map(|((name, unit), &value)| {
-        let status = ParameterStatus::Fitted;
-        ParameterEntry { name: name.to_owned(), value, unit: unit.to_owned(), stderr: None, status }
-    });
+    let parameters =
+        shapes.chain(amplitudes).zip(map.shape.iter().chain(&map.amplitudes)).map(|((name, unit), &value)| {
+            let status = ParameterStatus::Fitted;
+            ParameterEntry { name: name.to_owned(), value, unit: unit.to_owned(), stderr: None, status }
+        });
     EffectEntry { id: MAP_ID.to_owned(), parameters: parameters.collect() }
 }
 

@@ -58,7 +58,9 @@ fn forms_n(setting: &Setting<'_>, state: &State, coordinates: &Coordinates, plac
         let over = over_quantiles(coordinates.of_kind(own), &track.counted);
         for degree in 1..=LIVES {
             forms.push(own_n.iter().zip(&over).map(|(own, over)| own * legendre(degree, *over)).collect());
-            forms.push(friction_n(setting, state).zip(&over).map(|(sign, over)| sign * legendre(degree, *over)).collect());
+            forms.push(
+                friction_n(setting, state).zip(&over).map(|(sign, over)| sign * legendre(degree, *over)).collect(),
+            );
         }
     }
     forms

@@ -86,7 +86,8 @@ impl Joint<'_> {
     /// Fits the blocks in which `takes` is true, from `start` (base coordinates; amplitudes start at zero).
     pub fn fit(&self, rows: &Extended<'_>, start: &[f64], takes: &dyn Fn(usize) -> bool) -> Option<JointFit> {
         let reduced = rows.reduced(takes)?;
-        let problem = ForceProblem { summary: &reduced.summary, columns: self.columns, space: self.space, steps: self.ranges };
+        let problem =
+            ForceProblem { summary: &reduced.summary, columns: self.columns, space: self.space, steps: self.ranges };
         let n_free = self.space.free.len();
         let mut x = start[..n_free].to_vec();
         for (index, &(low, high)) in self.ranges.iter().enumerate() {

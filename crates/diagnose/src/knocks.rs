@@ -161,7 +161,11 @@ impl Knocks {
         let n = FOLDS as f64;
         let variance = (n - 1.0) / n * others.iter().map(|slope| (slope - mean).powi(2)).sum::<f64>();
         let counts: Vec<f64> = sums.iter().map(|sums| sums.rows).collect();
-        let without = HeldOut { blocks: sums.iter().map(|sums| sums.yy / sums.rows).collect(), counts: counts.clone(), floor_square: 0.0 };
+        let without = HeldOut {
+            blocks: sums.iter().map(|sums| sums.yy / sums.rows).collect(),
+            counts: counts.clone(),
+            floor_square: 0.0,
+        };
         let with = HeldOut {
             blocks: sums
                 .iter()

@@ -43,15 +43,19 @@ pub(crate) fn better(
     }
     let mut best: Option<(f64, Standstill)> = None;
     for standstill in LAWS.into_iter().filter(|law| *law != thresholds.standstill) {
-        let directions: Result<Vec<Direction>, IdentifyError> =
-            question.estimation.iter().map(|prepared| directed(prepared, Thresholds { standstill, ..thresholds })).collect();
+        let directions: Result<Vec<Direction>, IdentifyError> = question
+            .estimation
+            .iter()
+            .map(|prepared| directed(prepared, Thresholds { standstill, ..thresholds }))
+            .collect();
         let other = track.redirected(&directions?);
         let both: Vec<bool> = track.counted.iter().zip(&other.counted).map(|(own, other)| *own && *other).collect();
         // Where hardly anything is left to compare, nothing is decided.
         if 2 * both.iter().filter(|counted| **counted).count() < track.n_counted() {
             continue;
         }
-        let [own, new] = [track, &other].map(|track| left(question, found, &Track { counted: both.clone(), ..track.clone() }));
+        let [own, new] =
+            [track, &other].map(|track| left(question, found, &Track { counted: both.clone(), ..track.clone() }));
         if let (Some(own), Some(new)) = (own, new)
             && new < CLEARLY * own
             && best.is_none_or(|(lowest, _)| new / own < lowest)

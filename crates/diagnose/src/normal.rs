@@ -142,7 +142,18 @@ impl Normal {
             })
             .collect();
         let counts = of_block.iter().map(|block| block.len() as f64).collect();
-        Self { q, precision: nuisance.precision.clone(), n, triangle, reference, rows, counted: listed, of_block, products, counts }
+        Self {
+            q,
+            precision: nuisance.precision.clone(),
+            n,
+            triangle,
+            reference,
+            rows,
+            counted: listed,
+            of_block,
+            products,
+            counts,
+        }
     }
 
     /// Rows of each block that count.

@@ -52,7 +52,8 @@ pub struct Nuisance {
 }
 
 /// No nuisances at all.
-pub static NONE: Nuisance = Nuisance { n: 0, rows: Vec::new(), precision: Vec::new(), scales: Vec::new(), groups: Vec::new() };
+pub static NONE: Nuisance =
+    Nuisance { n: 0, rows: Vec::new(), precision: Vec::new(), scales: Vec::new(), groups: Vec::new() };
 
 /// Id of the static map in models.
 pub const MAP_ID: &str = "static-map";
@@ -184,8 +185,7 @@ impl Nuisance {
     /// The same with a smooth static map.
     #[must_use]
     pub fn with_map(&self, track: &Track, coordinates: &Coordinates) -> Self {
-        let [pressure, contraction] =
-            MAPPED.map(|kind| over_range(coordinates.of_kind(kind), &track.counted));
+        let [pressure, contraction] = MAPPED.map(|kind| over_range(coordinates.of_kind(kind), &track.counted));
         let products = |least: usize, degree: usize, sign: &dyn Fn(usize) -> f64| {
             let product = |(i, j): (usize, usize)| {
                 (0..track.n()).map(|at| sign(at) * legendre(i, pressure[at]) * legendre(j, contraction[at])).collect()
@@ -210,7 +210,8 @@ impl Nuisance {
             let mut columns = Vec::new();
             for i in 0..by_pressure.first().map_or(0, Vec::len) {
                 for j in 0..by_contraction.first().map_or(0, Vec::len) {
-                    columns.push((0..track.n()).map(|at| sign(at) * by_pressure[at][i] * by_contraction[at][j]).collect());
+                    columns
+                        .push((0..track.n()).map(|at| sign(at) * by_pressure[at][i] * by_contraction[at][j]).collect());
                 }
             }
             columns
@@ -222,14 +223,19 @@ impl Nuisance {
 
     /// The static map with `coefficients` as a model carries it; none where there is no map.
     pub fn map_term(&self, coefficients: &[f64], track: &Track, coordinates: &Coordinates) -> Option<Term> {
-        let columns = |wanted: Group| self.groups.iter().find(|(group, _)| *group == wanted).map(|(_, columns)| columns);
+        let columns =
+            |wanted: Group| self.groups.iter().find(|(group, _)| *group == wanted).map(|(_, columns)| columns);
         let (even, odd) = (columns(Group::EvenMap)?, columns(Group::OddMap)?);
         let [(lowest_pa, highest_pa), (least, most)] =
             MAPPED.map(|kind| range(coordinates.of_kind(kind), &track.counted));
         Some(Term {
             effect: effect(MAP_ID)?,
             shape: vec![lowest_pa, highest_pa, least, most],
-            amplitudes: even.clone().chain(odd.clone()).map(|column| coefficients[column] * self.scales[column]).collect(),
+            amplitudes: even
+                .clone()
+                .chain(odd.clone())
+                .map(|column| coefficients[column] * self.scales[column])
+                .collect(),
         })
     }
 }

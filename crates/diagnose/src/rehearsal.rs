@@ -286,8 +286,8 @@ pub(crate) mod tests {
             let guesses: Vec<Guess> = effects.iter().map(|(id, shape, _)| given.guess(id, shape)).collect();
             let mut weights = given.columns.weights(&parameters).to_vec();
             weights.extend(effects.iter().flat_map(|(_, _, amplitudes)| amplitudes.iter()));
-            let sheet =
-                Ground { track: &given.track, columns: &given.columns, only: None, slopes: true }.sheet(&guesses, &given.model);
+            let sheet = Ground { track: &given.track, columns: &given.columns, only: None, slopes: true }
+                .sheet(&guesses, &given.model);
             for (at, instant) in given.track.instants.iter_mut().enumerate() {
                 instant.force_n = sheet.force_n(at, &weights);
                 instant.moment.force_n = instant.force_n;
@@ -308,8 +308,8 @@ pub(crate) mod tests {
                 strand_modulus_pa: 3e9,
                 only: None,
                 nuisance: &crate::nuisance::NONE,
-        floor_square: 0.0,
-        goes_on: true,
+                floor_square: 0.0,
+                goes_on: true,
             }
         }
     }

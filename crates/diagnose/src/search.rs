@@ -77,7 +77,9 @@ const LEAST_SHARE: f64 = 0.1;
 const LEAST_OF_ALL: f64 = 0.04;
 /// Sum of `ln(without / with)` over held-out blocks that an effect must reach: as if one block were explained and nothing
 /// lost elsewhere.
-const LEAST_LOG_RATIO: f64 = 1.0;
+const LEAST_LOG_RATIO: f64 = 1.5;
+/// Mean square of what sensors leave beyond which the floor of a search is not theirs.
+const SENSORS: f64 = 4.0;
 /// The same for a further effect: what is left of those before it is everywhere.
 const FURTHER_LOG_RATIO: f64 = 3.0;
 /// The same beyond which a further effect is taken however small its share of the whole mismatch.
@@ -152,11 +154,14 @@ pub fn search(
             })
             .collect::<Option<Vec<_>>>()?
             .into_iter()
-            .fold((Vec::new(), Vec::new()), |(mut befores, mut all): (Vec<Judged>, Vec<(usize, Trial)>), (before, trials)| {
-                all.extend(trials.into_iter().map(|trial| (befores.len(), trial)));
-                befores.push(before);
-                (befores, all)
-            });
+            .fold(
+                (Vec::new(), Vec::new()),
+                |(mut befores, mut all): (Vec<Judged>, Vec<(usize, Trial)>), (before, trials)| {
+                    all.extend(trials.into_iter().map(|trial| (befores.len(), trial)));
+                    befores.push(before);
+                    (befores, all)
+                },
+            );
         let mut trials = trials;
         trials.sort_by(|left, right| right.1.log_ratio.total_cmp(&left.1.log_ratio));
         looked();
@@ -169,13 +174,7 @@ pub fn search(
         for (_, trial) in &trials {
             floor_square = floor_square.min(trial.held_out.mean_square());
         }
-        if std::env::var_os("PAM_DEBUG").is_some() {
-            eprintln!("look {looks}: {:?} before {:?} best {:.4} floor² {:.4}", best.state.guesses, before.iter().map(|b| b.held_out.mean_square()).collect::<Vec<_>>(), best.held_out.mean_square(), floor_square);
-            for (k, t) in trials.iter().take(8) { eprintln!("   {k} {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
-        }
-        let chosen = trials
-            .into_iter()
-            .find(|(map, trial)| worth(trial, &before[*map], &whole, floor_square, limits));
+        let chosen = trials.into_iter().find(|(map, trial)| worth(trial, &before[*map], &whole, floor_square, limits));
         let Some((_, chosen)) = chosen else { break };
         let Some(next) = settle(&mapped, &best, &chosen) else { break };
         best = next;
@@ -186,7 +185,10 @@ pub fn search(
     }
     let mut parsimonious = Vec::new();
     while best.state.guesses.len() < limits.max_effects {
-        let Some(next) = static_effect(plain, &mapped, &best, &coordinates, &seen, &allowed, floor_square, limits) else { break };
+        let Some(next) = static_effect(plain, &mapped, &best, &coordinates, &seen, &allowed, floor_square, limits)
+        else {
+            break;
+        };
         parsimonious.push(next.state.guesses[next.state.guesses.len() - 1].id());
         best = next;
     }
@@ -201,7 +203,11 @@ pub fn search(
         let setting = if of_the_map { plain } else { &mapped };
         let found = without(setting, &best, index, &seen, &promising);
         let Some((without, rivals)) = found else { continue };
-        let with = if of_the_map { judged(plain, plain.fit_near(best.state.guesses.clone(), &best.state)?)? } else { best.clone() };
+        let with = if of_the_map {
+            judged(plain, plain.fit_near(best.state.guesses.clone(), &best.state)?)?
+        } else {
+            best.clone()
+        };
         taken.push(Taken { without: without.held_out, with: with.held_out, rivals });
     }
     let (best, nuisance) = kept_map(plain, best, nuisance)?;
@@ -251,10 +257,6 @@ fn static_effect(
     }
     let statics = |id: &str| allowed(id) && pam_core::effects::effect(id).is_some_and(|effect| effect.is_static());
     let trials = trial::among(&beside, &bare.state, &bare.held_out, seen, &Shapes::new(), &statics);
-    if std::env::var_os("PAM_DEBUG").is_some() {
-        eprintln!("static: {:?} bare {:.4} map {:.4}", bare.state.guesses, bare.held_out.mean_square(), best.held_out.mean_square());
-        for t in trials.iter().take(25) { eprintln!("   {} {:?} lr {:.2} ms {:.4}", t.guess.id(), t.guess.shape, t.log_ratio, t.held_out.mean_square()); }
-    }
     let chosen = trials.into_iter().find(|trial| {
         let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
         gained > OF_THE_MAP * map && trial.log_ratio > LEAST_LOG_RATIO
@@ -280,7 +282,9 @@ fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits:
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let whole = base.held_out.mean_square() - floor_square;
     let further = !best.state.guesses.is_empty();
-    let matters = limits.matters_above_n.map_or(0.25 * full_floor, |limit_n| limit_n * limit_n);
+    // What the sensors leave is the measure; what else no model gets below is no license to overlook.
+    let measure = full_floor.min(SENSORS * limits.sensor_floor_n.powi(2));
+    let matters = limits.matters_above_n.map_or(0.25 * measure, |limit_n| limit_n * limit_n);
     let least_log_ratio = if further { FURTHER_LOG_RATIO } else { LEAST_LOG_RATIO };
     gained > LEAST_SHARE * mismatch
         && gained > matters

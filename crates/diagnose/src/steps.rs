@@ -9,23 +9,33 @@ use crate::state::{Setting, State};
 const PER_RECORDING: usize = 3;
 /// What "just" means, in s.
 const NEAR_S: f64 = 1.0;
+/// What it means at most for a jump: what takes longer is a change, but none at one instant.
+const SHARP_S: f64 = 0.25;
 
 /// Whether the residual itself jumps at the instant of a step of `step_n`, and by about as much: whatever drifts instead is no
 /// step.
 pub(crate) fn is_sudden(setting: &Setting<'_>, residuals_n: &[f64], shape: &[f64], step_n: f64) -> bool {
     let Some(range) = setting.track.recordings.get(shape[0] as usize) else { return false };
-    let jump_n = jump_n(setting, residuals_n, range.clone(), shape[1]);
-    jump_n.is_some_and(|jump_n| jump_n / step_n > 0.5 && jump_n / step_n < 2.0)
+    [NEAR_S, SHARP_S].into_iter().all(|near_s| {
+        let jump_n = jump_n(setting, residuals_n, range.clone(), shape[1], near_s);
+        jump_n.is_some_and(|jump_n| jump_n / step_n > 0.6 && jump_n / step_n < 1.7)
+    })
 }
 
 /// Mean residual just after an instant less that just before it; none where too little of either counts.
-fn jump_n(setting: &Setting<'_>, residuals_n: &[f64], range: std::ops::Range<usize>, instant_s: f64) -> Option<f64> {
+fn jump_n(
+    setting: &Setting<'_>,
+    residuals_n: &[f64],
+    range: std::ops::Range<usize>,
+    instant_s: f64,
+    near_s: f64,
+) -> Option<f64> {
     let (mut before, mut after) = ((0.0, 0.0), (0.0, 0.0));
     let instants = &setting.track.instants[range.clone()];
-    let first = range.start + instants.partition_point(|instant| instant.moment.time_s < instant_s - NEAR_S);
+    let first = range.start + instants.partition_point(|instant| instant.moment.time_s < instant_s - near_s);
     for at in (first..range.end).filter(|&at| setting.track.counted[at]) {
         let time_s = setting.track.instants[at].moment.time_s;
-        if time_s > instant_s + NEAR_S {
+        if time_s > instant_s + near_s {
             break;
         }
         let side = if time_s < instant_s { &mut before } else { &mut after };
@@ -60,7 +70,9 @@ fn stirred(setting: &Setting<'_>, range: std::ops::Range<usize>) -> Vec<bool> {
         }
         let near = &instants[first..end];
         let range_of = |value: &dyn Fn(&Instant) -> f64| {
-            near.iter().map(value).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+            near.iter()
+                .map(value)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
         };
         let starts = channels.iter().zip(largest).any(|(channel, largest)| {
             let (low, high) = range_of(channel);
@@ -99,7 +111,7 @@ pub(crate) fn shapes(setting: &Setting<'_>, state: &State) -> Vec<Vec<f64>> {
         }
         let jumps = counted.iter().enumerate().step_by(5).map(|(position, &at)| {
             let instant_s = setting.track.instants[at].moment.time_s;
-            (jump_n(setting, &residuals, range.clone(), instant_s).unwrap_or(0.0).abs(), position)
+            (jump_n(setting, &residuals, range.clone(), instant_s, NEAR_S).unwrap_or(0.0).abs(), position)
         });
         for mut ranked in [gains, jumps.collect()] {
             let mut taken: Vec<usize> = Vec::new();

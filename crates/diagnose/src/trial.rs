@@ -30,7 +30,7 @@ const REFINED: usize = 5;
 const LEAST_GAIN: f64 = 1e-3;
 
 /// Share of its evidence that an event keeps: it has been looked for at every instant of every recording.
-const EVENT_CHARGE: f64 = 0.8;
+const EVENT_CHARGE: f64 = 0.5;
 
 /// Share of its evidence that an effect keeps whose amplitude presses against the largest that physics has for it: something
 /// else of that shape is likelier.

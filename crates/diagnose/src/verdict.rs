@@ -18,10 +18,16 @@ pub struct Sizes {
     pub matters_n: f64,
     /// Share of the base model's residual (mean squares) that is structured.
     pub structured_share: f64,
+    /// What the best hypothesis leaves.
+    pub best_n: f64,
+    /// What the noise of the sensors alone leaves.
+    pub sensors_n: f64,
     /// Whether the user said what matters.
     pub limited: bool,
 }
 
+/// Times the sensors' noise that may be left of a model that lacks nothing: a smooth static map follows no muscle better.
+const MOST_OF_SENSORS: f64 = 2.5;
 /// Share of the mismatch (mean squares) that may be left of an explanation.
 const MOST_LEFT: f64 = 0.3;
 /// The same of what matters by itself: less is what the form of an effect that is otherwise right leaves of it.
@@ -41,6 +47,8 @@ impl Sizes {
         let base = found.whole.held_out.mean_square();
         Self {
             structured_share: (excess(base, found.floor_square).powi(2) / base.max(f64::MIN_POSITIVE)).min(1.0),
+            best_n: best.sqrt(),
+            sensors_n: limits.sensor_floor_n,
             limited: limits.matters_above_n.is_some(),
             floor_n,
             mismatch_n: excess(base, found.floor_square),
@@ -66,7 +74,9 @@ pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
     let more_than = |times: f64, share: f64| sizes.left_n > times * sizes.matters_n && sizes.share_left() > share;
     let structured = more_than(0.5, MOST_LEFT) || more_than(1.0, LEAST_LEFT);
     if found.best.state.guesses.is_empty() && !knocks {
-        return if sizes.mismatch_n > sizes.matters_n { Verdict::Unexplained } else { Verdict::Consistent };
+        let beyond_sensors = !sizes.limited && sizes.best_n > MOST_OF_SENSORS * sizes.sensors_n;
+        let is_missing = sizes.mismatch_n > sizes.matters_n || beyond_sensors;
+        return if is_missing { Verdict::Unexplained } else { Verdict::Consistent };
     }
     if structured {
         Verdict::Unexplained

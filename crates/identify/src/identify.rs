@@ -1,8 +1,8 @@
 //! All of it in order: from recordings to an artifact.
 
 use pam_core::artifact::model::{
-    Assumed, BladderLaw, Correlation, Domain, FitReport, FrictionLaw, IdentifyConfig, Loss, ModelArtifact, RecordingFit, SCHEMA, StandstillFit, SearchReport,
-    StartReport, UnboundedFit,
+    Assumed, BladderLaw, Correlation, Domain, FitReport, FrictionLaw, IdentifyConfig, Loss, ModelArtifact,
+    RecordingFit, SCHEMA, SearchReport, StandstillFit, StartReport, UnboundedFit,
 };
 use pam_core::artifact::{Input, Tool};
 use pam_core::direction::Thresholds;
@@ -302,12 +302,24 @@ impl Checked {
         let mut bladder = match self.assumed.bladder {
             _ if fixed || self.free.contains(&Parameter::C01) => BladderLaw::Free,
             Some(bladder) => bladder,
-            None => if judged { BladderLaw::Free } else { BladderLaw::Shared },
+            None => {
+                if judged {
+                    BladderLaw::Free
+                } else {
+                    BladderLaw::Shared
+                }
+            }
         };
         let mut friction = match self.assumed.friction {
             _ if self.free.contains(&Parameter::StrandFriction) => FrictionLaw::Both,
             Some(friction) => friction,
-            None => if judged { FrictionLaw::Both } else { FrictionLaw::Rubber },
+            None => {
+                if judged {
+                    FrictionLaw::Both
+                } else {
+                    FrictionLaw::Rubber
+                }
+            }
         };
         loop {
             let space = self.space_of(columns, bladder, friction);
@@ -378,13 +390,7 @@ impl Checked {
     }
 
     /// What of `space` the recordings cannot identify.
-    fn hopeless(
-        &self,
-        columns: &ForceColumns,
-        condensed: &Condensed,
-        space: &SearchSpace,
-        noise_n: f64,
-    ) -> Vec<Free> {
+    fn hopeless(&self, columns: &ForceColumns, condensed: &Condensed, space: &SearchSpace, noise_n: f64) -> Vec<Free> {
         let modulus_pa = self.muscle.strand_modulus_pa;
         let center: Vec<f64> = (0..space.free.len()).map(|index| space.nominal_coordinate(index, modulus_pa)).collect();
         let problem = ForceProblem { summary: &condensed.total, columns, space, steps: &[] };

@@ -138,7 +138,9 @@ static PAGE: Page = Page {
     equation: "F = F_base + Σ a_ij P_i(p̂) P_j(ε̂) + s Σ b_ij P_i(p̂) P_j(ε̂)",
     symbols: &[
         Symbol { symbol: "P_i", unit: "1", meaning: "Legendre polynomial of degree i" },
-        Symbol { symbol: "p̂, ε̂", unit: "1", meaning: "pressure and contraction ratio, -1 to 1 over what was seen" },
+        Symbol {
+            symbol: "p̂, ε̂", unit: "1", meaning: "pressure and contraction ratio, -1 to 1 over what was seen"
+        },
         Symbol { symbol: "a_ij, b_ij", unit: "N", meaning: "size of each term" },
     ],
     validity: "Inside the pressures and contractions that were recorded; beyond, it keeps its value at the rim.",
@@ -181,7 +183,8 @@ mod tests {
 
     #[test]
     fn beyond_what_was_seen_it_keeps_its_value() {
-        let at = |pressure_pa| pull(&mut *StaticMap.start(&nominal(), &SHAPE), &Moment { pressure_pa, ..still() }, &base());
+        let at =
+            |pressure_pa| pull(&mut *StaticMap.start(&nominal(), &SHAPE), &Moment { pressure_pa, ..still() }, &base());
         assert_eq!(at(4e5), at(9e5));
         assert_ne!(at(3e5), at(4e5));
     }
