@@ -20,6 +20,7 @@ pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: 
         verdict: match artifact.verdict {
             Verdict::Consistent => PageVerdict::Consistent,
             Verdict::Explained => PageVerdict::Explained,
+            Verdict::ExplainedInPart => PageVerdict::ExplainedInPart,
             Verdict::Ambiguous => PageVerdict::Ambiguous,
             Verdict::Unexplained => PageVerdict::Unexplained,
         },

@@ -70,9 +70,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
         return Ok(pam_cli::Verdict::Accepted);
     }
     let progress = console.progress("diagnosing", 1);
-    let found = diagnose_observed(request, &|done, all| progress.set_of(done, all))?;
+    let mut found = diagnose_observed(request, &|done, all| progress.set_of(done, all))?;
     drop(progress);
     let agreement = Agreement::of(&found)?;
+    found.weigh(&agreement);
     let tool = Tool { name: "pam-diagnose".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
     let head = Head { tool, inputs: hashes, seed: args.run.seed };
     let artifact = found.artifact(head.clone(), &agreement);
@@ -89,7 +90,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     outputs.write(&console, &found, &artifact, augmented.as_ref())?;
     Ok(match artifact.verdict {
         Verdict::Consistent | Verdict::Explained | Verdict::Ambiguous => pam_cli::Verdict::Accepted,
-        Verdict::Unexplained => pam_cli::Verdict::Rejected,
+        Verdict::ExplainedInPart | Verdict::Unexplained => pam_cli::Verdict::Rejected,
     })
 }
 

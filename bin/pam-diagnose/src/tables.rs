@@ -29,6 +29,7 @@ fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Consistent => "Consistent",
         Verdict::Explained => "Explained",
+        Verdict::ExplainedInPart => "Explained in part",
         Verdict::Ambiguous => "Ambiguous",
         Verdict::Unexplained => "Unexplained",
     }

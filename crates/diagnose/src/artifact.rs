@@ -100,15 +100,30 @@ fn effective_samples(diagnosis: &Diagnosis) -> Result<f64, DiagnoseError> {
 }
 
 impl Diagnosis {
+    /// Lowers what is called explained to explained in part where, over all samples, more is left than half as much again as
+    /// the sensors leave, and says so.
+    pub fn weigh(&mut self, agreement: &Agreement) {
+        let left_n = together(&agreement.estimation).rmse_all_n;
+        let sensors_n = self.sizes.sensors_n;
+        if self.verdict == Verdict::Explained && left_n > MOST_OF_SENSORS * sensors_n {
+            self.verdict = Verdict::ExplainedInPart;
+            self.statement.push_str(&format!(
+                " Over all samples {left_n:.2} N are left, where the sensors alone leave {sensors_n:.2} N."
+            ));
+        }
+    }
+
     /// The diagnosis for other programs and for people.
     ///
     /// # Panics
     /// Where `agreement` is of another diagnosis.
     pub fn artifact(&self, head: Head, agreement: &Agreement) -> DiagnosisArtifact {
-        let noise_floor_n = self.sizes.floor_n;
+        let noise_floor_n = agreement.noise_floor_n;
         let pair = |before: &FitStatistics, after: &FitStatistics| BeforeAfter {
             rmse_before_n: before.rmse_n,
             rmse_after_n: after.rmse_n,
+            rmse_all_before_n: before.rmse_all_n,
+            rmse_all_after_n: after.rmse_all_n,
             noise_floor_n,
         };
         let held = agreement.base_holdout.together.zip(agreement.holdout.together);
@@ -339,6 +354,9 @@ impl Diagnosis {
         warnings
     }
 }
+
+/// Times the sensors' noise that may be left of what is called explained.
+const MOST_OF_SENSORS: f64 = 1.5;
 
 /// All recordings together; a diagnosis has at least one.
 fn together(evaluation: &Evaluation) -> FitStatistics {

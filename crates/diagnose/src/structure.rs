@@ -423,6 +423,8 @@ mod tests {
         let remainder = Remainder {
             rows,
             n_directions: 1,
+            ridges: vec![1e-6],
+            floor_square: 0.0,
             blocks: (0..BLOCKS).map(|block| block * each..(block + 1) * each).collect(),
             fold_of_block: (0..BLOCKS).map(|block| block % FOLDS).collect(),
             counts: vec![each as f64; BLOCKS],

@@ -19,7 +19,7 @@ pub(crate) fn statement(
              matter.",
             sizes.floor_n, sizes.mismatch_n, sizes.matters_n
         ),
-        Verdict::Explained => format!(
+        Verdict::Explained | Verdict::ExplainedInPart => format!(
             "The model lacks {}: that explains {:.0} % of a mismatch of {:.2} N, which lies {}.",
             list(&names),
             100.0 * (1.0 - sizes.share_left()),

@@ -61,6 +61,8 @@ pub enum Verdict {
     Consistent,
     /// The named effects explain the mismatch.
     Explained,
+    /// They explain part of it: over all samples more is left than half as much again as the sensors leave.
+    ExplainedInPart,
     /// They do, and so do others that these recordings cannot tell from them.
     Ambiguous,
     /// Structure is left that no effect of the catalogue explains.
@@ -218,7 +220,13 @@ pub struct BeforeAfter {
     pub rmse_before_n: f64,
     /// Base model and effects, in N.
     pub rmse_after_n: f64,
-    /// What noise leaves of any model, in N.
+    /// The same before over all samples, reversals and what came before the first motion included, in N.
+    #[serde(default)]
+    pub rmse_all_before_n: f64,
+    /// And after.
+    #[serde(default)]
+    pub rmse_all_after_n: f64,
+    /// What the sensors leave of a perfect model, in N.
     pub noise_floor_n: f64,
 }
 

@@ -52,7 +52,7 @@ pub(crate) fn next_experiment(
             }
             separate(setting, &explanations, sizes.floor_n, domain)
         }
-        Verdict::Explained => {
+        Verdict::Explained | Verdict::ExplainedInPart => {
             let evidence = |index: usize| {
                 found.taken.get(index).map_or(0.0, |taken| taken.without.log_ratio(&found.best.held_out))
             };

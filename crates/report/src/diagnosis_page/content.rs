@@ -42,6 +42,8 @@ pub enum PageVerdict {
     Consistent,
     /// The named effects explain the mismatch.
     Explained,
+    /// They explain part of it.
+    ExplainedInPart,
     /// They do, and so do others.
     Ambiguous,
     /// Structure is left without a name.

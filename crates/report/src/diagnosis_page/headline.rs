@@ -8,6 +8,7 @@ pub(super) fn headline(page: &DiagnosisPage) -> String {
     let (class, words) = match page.verdict {
         PageVerdict::Consistent => ("consistent", "Model and recordings agree"),
         PageVerdict::Explained => ("explained", "The mismatch is explained"),
+        PageVerdict::ExplainedInPart => ("explained-in-part", "The mismatch is explained in part"),
         PageVerdict::Ambiguous => ("ambiguous", "The mismatch has more than one explanation"),
         PageVerdict::Unexplained => ("unexplained", "Part of the mismatch has no name"),
     };

@@ -95,7 +95,7 @@ fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
         PageVerdict::Consistent => {
             "That is within what noise, the uncertainty of the parameters or the limit of what matters allow."
         }
-        PageVerdict::Explained | PageVerdict::Ambiguous | PageVerdict::Unexplained => {
+        PageVerdict::Explained | PageVerdict::ExplainedInPart | PageVerdict::Ambiguous | PageVerdict::Unexplained => {
             "More than noise and the uncertainty of the parameters allow."
         }
     };
