@@ -132,7 +132,7 @@ impl Nuisance {
     pub fn without(&self, takes: impl Fn(Group) -> bool) -> Self {
         let kept: Vec<usize> =
             self.groups.iter().filter(|(group, _)| !takes(*group)).flat_map(|(_, columns)| columns.clone()).collect();
-        let n_instants = if self.n > 0 { self.rows.len() / self.n } else { 0 };
+        let n_instants = self.rows.len().checked_div(self.n).unwrap_or(0);
         let mut groups = Vec::new();
         let mut from = 0;
         for (group, columns) in self.groups.iter().filter(|(group, _)| !takes(*group)) {
@@ -207,14 +207,12 @@ impl Nuisance {
                 let knots = knots(values, &track.counted, n[index]);
                 values.iter().map(|&value| hats(&knots, value)).collect::<Vec<Vec<f64>>>()
             });
-            let mut columns = Vec::new();
-            for i in 0..by_pressure.first().map_or(0, Vec::len) {
-                for j in 0..by_contraction.first().map_or(0, Vec::len) {
-                    columns
-                        .push((0..track.n()).map(|at| sign(at) * by_pressure[at][i] * by_contraction[at][j]).collect());
-                }
-            }
-            columns
+            let [rows, columns] = [&by_pressure, &by_contraction].map(|hats| hats.first().map_or(0, Vec::len));
+            let product = |(i, j): (usize, usize)| {
+                let hats = by_pressure.iter().zip(&by_contraction).enumerate();
+                hats.map(|(at, (pressure, contraction))| sign(at) * pressure[i] * contraction[j]).collect()
+            };
+            (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))).map(product).collect::<Vec<Vec<f64>>>()
         };
         let even = plane(FREE_EVEN, &|_| 1.0);
         let odd = plane(FREE_ODD, &|at| track.instants[at].moment.direction);
@@ -295,4 +293,95 @@ fn hats(knots: &[f64], value: f64) -> Vec<f64> {
     hats[above - 1] = 1.0 - share;
     hats[above] = share;
     hats
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    /// Root mean square of what the base leaves beside `nuisance`, in N.
+    fn left_n(given: &Given, nuisance: &Nuisance) -> f64 {
+        let plain = given.setting();
+        let setting = plain.beside(nuisance);
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let residuals_n = setting.residuals_n(&state);
+        (residuals_n.iter().map(|residual| residual * residual).sum::<f64>() / residuals_n.len() as f64).sqrt()
+    }
+
+    #[test]
+    fn piecewise_linear_functions_sum_to_one() {
+        let knots = [0.0, 1.0, 4.0, 5.0];
+        for value in [-3.0, 0.0, 0.3, 1.0, 3.9, 5.0, 70.0] {
+            assert!((hats(&knots, value).iter().sum::<f64>() - 1.0).abs() < 1e-12, "{value}");
+        }
+        assert_eq!(hats(&[2.0], 7.0), [1.0]);
+    }
+
+    #[test]
+    fn a_column_has_a_size_of_one_newton_where_it_is() {
+        let counted = [true, true, true, false];
+        let (column, scale) = normalized(vec![3.0, 0.0, -3.0, 100.0], &counted);
+        assert_eq!(column[..3], [1.0, 0.0, -1.0]);
+        assert!((scale - 1.0 / 3.0).abs() < 1e-12);
+        assert_eq!(normalized(vec![0.0; 4], &counted), (vec![0.0; 4], 0.0));
+    }
+
+    #[test]
+    fn a_tare_is_taken_up_as_far_as_load_cells_have_one() {
+        let mut given = Given::of(&["isobaric-triangles", "isometric-ramps"], &[]);
+        let second = given.track.recordings[1].clone();
+        for instant in &mut given.track.instants[second] {
+            instant.force_n += 0.5;
+        }
+        let without_n = left_n(&given, &NONE);
+        let with_n = left_n(&given, &Nuisance::of_recordings(&given.track, 0.1));
+        assert!(with_n < 0.2 * without_n, "{with_n} of {without_n}");
+    }
+
+    #[test]
+    fn a_smooth_static_misfit_is_the_maps_and_a_bump_is_not() {
+        let bumpy = |width: f64| {
+            let mut given = Given::of(&["isobaric-triangles", "isometric-ramps"], &[]);
+            for instant in &mut given.track.instants {
+                let off = (instant.moment.contraction_ratio - 0.1) / width;
+                instant.force_n += 8.0 * (-off * off).exp();
+            }
+            let nuisance = NONE.with_map(&given.track, &Coordinates::of(&given.track));
+            left_n(&given, &nuisance) / left_n(&given, &NONE)
+        };
+        assert!(bumpy(0.15) < 0.2, "{}", bumpy(0.15));
+        assert!(bumpy(0.01) > 0.7, "{}", bumpy(0.01));
+    }
+
+    #[test]
+    fn groups_can_be_left_out_again() {
+        let given = Given::of(&["isobaric-triangles", "isometric-ramps"], &[]);
+        let coordinates = Coordinates::of(&given.track);
+        let tares = Nuisance::of_recordings(&given.track, 0.1);
+        let all = tares.with_map(&given.track, &coordinates);
+        let again = all.without(|group| matches!(group, Group::EvenMap | Group::OddMap));
+        assert_eq!((again.n(), again.row(17)), (tares.n(), tares.row(17)));
+    }
+
+    #[test]
+    fn the_map_that_a_model_carries_is_the_one_that_was_fitted() {
+        let mut given = Given::of(&["isobaric-triangles"], &[]);
+        for instant in &mut given.track.instants {
+            instant.force_n += 1e-4 * instant.moment.pressure_pa * instant.moment.contraction_ratio;
+        }
+        let coordinates = Coordinates::of(&given.track);
+        let nuisance = NONE.with_map(&given.track, &coordinates);
+        let plain = given.setting();
+        let setting = plain.beside(&nuisance);
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let term = nuisance.map_term(&state.fit.nuisances, &given.track, &coordinates).expect("a map");
+        let mut memory = term.effect.start(&given.muscle, &term.shape);
+        let mut columns = vec![0.0; term.amplitudes.len()];
+        for (at, instant) in given.track.instants.iter().enumerate().filter(|(at, _)| given.track.counted[*at]) {
+            memory.pulls(&instant.moment, &state.sheet.base[at], &mut columns);
+            let carried_n: f64 = columns.iter().zip(&term.amplitudes).map(|(column, size)| column * size).sum();
+            assert!((carried_n - state.nuisance_n[at]).abs() < 1e-6, "{carried_n} {}", state.nuisance_n[at]);
+        }
+    }
 }

@@ -282,6 +282,7 @@ pub(crate) mod tests {
                     track.fold_of_block.push(piece);
                 }
             }
+            track.sample();
             let mut given = Self { track, columns, space, muscle, model, start };
             let guesses: Vec<Guess> = effects.iter().map(|(id, shape, _)| given.guess(id, shape)).collect();
             let mut weights = given.columns.weights(&parameters).to_vec();

@@ -1,7 +1,7 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::{Kind, Seen};
+use pam_core::effects::{Effect, Kind, Seen, effect};
 
 use crate::coordinates::Coordinates;
 use crate::forms;
@@ -119,64 +119,25 @@ pub fn search(
         floor_square = floor_square.min(unnamed.held_out.mean_square());
     }
     let whole = best.clone();
-    let allowed = |id: &str| !limits.excluded.iter().any(|excluded| excluded == id);
+    let look = Look { plain, mapped: &mapped, free: &free, coordinates: &coordinates, seen: &seen, limits };
     let mut first = Vec::new();
     let mut promising = Shapes::new();
     let mut known = Shapes::new();
     let mut looks = 0;
     while best.state.guesses.len() < limits.max_effects {
-        let (before, trials) = [&free, &nuisance]
-            .into_iter()
-            .enumerate()
-            .map(|(index, map)| {
-                let formed = forms::with_forms(&mapped, &best.state, &coordinates, map);
-                let beside = mapped.beside(&formed);
-                let bare = if index == 0 {
-                    let beside = plain.beside(map);
-                    judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?
-                } else {
-                    best.clone()
-                };
-                let bent = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
-                // Other forms that only follow the noise are no better than none.
-                let before =
-                    if bent.held_out.mean_square() < bare.held_out.mean_square() { bent.clone() } else { bare };
-                // Beside a map that bends, a static effect is one more bend; beside a smooth one, one that acts in a part of the
-                // range stands out.
-                let takes = |id: &str| {
-                    allowed(id)
-                        && pam_core::effects::effect(id).is_some_and(|effect| {
-                            if index == 0 { !effect.is_static() } else { effect.is_static() && effect.is_local() }
-                        })
-                };
-                let trials = trial::among(&beside, &bent.state, &before.held_out, &seen, &known, &takes);
-                Some((before, trials))
-            })
-            .collect::<Option<Vec<_>>>()?
-            .into_iter()
-            .fold(
-                (Vec::new(), Vec::new()),
-                |(mut befores, mut all): (Vec<Judged>, Vec<(usize, Trial)>), (before, trials)| {
-                    all.extend(trials.into_iter().map(|trial| (befores.len(), trial)));
-                    befores.push(before);
-                    (befores, all)
-                },
-            );
-        let mut trials = trials;
-        trials.sort_by(|left, right| right.1.log_ratio.total_cmp(&left.1.log_ratio));
+        let tried = look.trials(&best, &known)?;
         looked();
         if looks == 0 {
-            first = trials.iter().map(|(_, trial)| trial.clone()).collect();
+            first = tried.iter().map(|tried| tried.trial.clone()).collect();
         }
         looks += 1;
-        known = promise(&trials).collect();
+        known = promise(&tried).collect();
         promising.extend(known.clone());
-        for (_, trial) in &trials {
+        for Tried { trial, .. } in &tried {
             floor_square = floor_square.min(trial.held_out.mean_square());
         }
-        let chosen = trials.into_iter().find(|(map, trial)| worth(trial, &before[*map], &whole, floor_square, limits));
-        let Some((_, chosen)) = chosen else { break };
-        let Some(next) = settle(&mapped, &best, &chosen) else { break };
+        let chosen = tried.iter().find(|tried| worth(tried, &best, &whole, floor_square, limits));
+        let Some(next) = chosen.and_then(|chosen| settle(&mapped, &best, &chosen.trial)) else { break };
         best = next;
         if looks > 1 {
             best = second_look(&mapped, best, &seen, &promising);
@@ -185,10 +146,7 @@ pub fn search(
     }
     let mut parsimonious = Vec::new();
     while best.state.guesses.len() < limits.max_effects {
-        let Some(next) = static_effect(plain, &mapped, &best, &coordinates, &seen, &allowed, floor_square, limits)
-        else {
-            break;
-        };
+        let Some(next) = look.static_effect(&best, floor_square) else { break };
         parsimonious.push(next.state.guesses[next.state.guesses.len() - 1].id());
         best = next;
     }
@@ -232,53 +190,101 @@ fn kept_map(plain: &Setting<'_>, best: Judged, map: Nuisance) -> Option<(Judged,
 /// Share of what the static map takes up that a static effect must take up to be named in its place.
 const OF_THE_MAP: f64 = 0.93;
 
-/// `best` with the static effect that stands for the static map, if there is one.
-fn static_effect(
-    plain: &Setting<'_>,
-    mapped: &Setting<'_>,
-    best: &Judged,
-    coordinates: &Coordinates,
-    seen: &Seen,
-    allowed: &(dyn Fn(&str) -> bool + Sync),
-    floor_square: f64,
-    limits: &Limits,
-) -> Option<Judged> {
-    // What is left of an effect that was named is none of the map's.
-    let [formed, formed_map] =
-        [plain, mapped].map(|setting| forms::with_forms(mapped, &best.state, coordinates, setting.nuisance));
-    let (beside, beside_map) = (plain.beside(&formed), mapped.beside(&formed_map));
-    let bare = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
-    let with_map = judged(&beside_map, beside_map.fit_near(best.state.guesses.clone(), &best.state)?)?;
-    let map = bare.held_out.mean_square() - with_map.held_out.mean_square();
-    let full_floor = floor_square + limits.sensor_floor_n.powi(2);
-    let matters = limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
-    if map < matters {
-        return None;
+/// A trial, and what was left before it.
+struct Tried {
+    trial: Trial,
+    before: HeldOut,
+}
+
+/// What every look at the catalogue shares.
+struct Look<'a> {
+    /// Beside the nuisances of the recordings alone.
+    plain: &'a Setting<'a>,
+    /// Beside a smooth static map as well.
+    mapped: &'a Setting<'a>,
+    /// Nuisances with a static map that bends.
+    free: &'a Nuisance,
+    coordinates: &'a Coordinates,
+    seen: &'a Seen,
+    limits: &'a Limits,
+}
+
+impl Look<'_> {
+    fn allows(&self, id: &str) -> bool {
+        !self.limits.excluded.iter().any(|excluded| excluded == id)
     }
-    let statics = |id: &str| allowed(id) && pam_core::effects::effect(id).is_some_and(|effect| effect.is_static());
-    let trials = trial::among(&beside, &bare.state, &bare.held_out, seen, &Shapes::new(), &statics);
-    let chosen = trials.into_iter().find(|trial| {
-        let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
-        gained > OF_THE_MAP * map && trial.log_ratio > LEAST_LOG_RATIO
-    })?;
-    let named = settle(&beside, &bare, &chosen)?;
-    judged(mapped, mapped.fit_near(named.state.guesses.clone(), &named.state)?)
+
+    /// Every effect that `best` does not have, on top of it; best first. Beside a map that bends, a static effect is one more
+    /// bend; beside a smooth one, one that acts in a part of the range stands out.
+    fn trials(&self, best: &Judged, known: &Shapes) -> Option<Vec<Tried>> {
+        let with_memory = |effect: &dyn Effect| !effect.is_static();
+        let local = |effect: &dyn Effect| effect.is_static() && effect.is_local();
+        let mut tried = self.beside(best, self.free, known, &with_memory)?;
+        tried.extend(self.beside(best, self.mapped.nuisance, known, &local)?);
+        tried.sort_by(|left, right| right.trial.log_ratio.total_cmp(&left.trial.log_ratio));
+        Some(tried)
+    }
+
+    fn beside(
+        &self,
+        best: &Judged,
+        map: &Nuisance,
+        known: &Shapes,
+        wanted: &(dyn Fn(&dyn Effect) -> bool + Sync),
+    ) -> Option<Vec<Tried>> {
+        let fitted =
+            |setting: &Setting<'_>| judged(setting, setting.fit_near(best.state.guesses.clone(), &best.state)?);
+        let bare = fitted(&self.plain.beside(map))?;
+        let formed = forms::with_forms(self.mapped, &best.state, self.coordinates, map);
+        let beside = self.plain.beside(&formed);
+        let bent = fitted(&beside)?;
+        // Other forms that only follow the noise are no better than none.
+        let before = if bent.held_out.mean_square() < bare.held_out.mean_square() { &bent } else { &bare };
+        let takes = |id: &str| self.allows(id) && effect(id).is_some_and(wanted);
+        let trials = trial::among(&beside, &bent.state, &before.held_out, self.seen, known, &takes);
+        Some(trials.into_iter().map(|trial| Tried { trial, before: before.held_out.clone() }).collect())
+    }
+
+    /// `best` with the static effect that stands for the static map, if there is one.
+    fn static_effect(&self, best: &Judged, floor_square: f64) -> Option<Judged> {
+        // What is left of an effect that was named is none of the map's.
+        let [formed, formed_map] = [self.plain, self.mapped]
+            .map(|setting| forms::with_forms(self.mapped, &best.state, self.coordinates, setting.nuisance));
+        let (beside, beside_map) = (self.plain.beside(&formed), self.plain.beside(&formed_map));
+        let bare = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
+        let with_map = judged(&beside_map, beside_map.fit_near(best.state.guesses.clone(), &best.state)?)?;
+        let map = bare.held_out.mean_square() - with_map.held_out.mean_square();
+        let full_floor = floor_square + self.limits.sensor_floor_n.powi(2);
+        let matters = self.limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
+        if map < matters {
+            return None;
+        }
+        let statics = |id: &str| self.allows(id) && effect(id).is_some_and(|effect| effect.is_static());
+        let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &statics);
+        let chosen = trials.into_iter().find(|trial| {
+            let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
+            gained > OF_THE_MAP * map && trial.log_ratio > LEAST_LOG_RATIO
+        })?;
+        let named = settle(&beside, &bare, &chosen)?;
+        judged(self.mapped, self.mapped.fit_near(named.state.guesses.clone(), &named.state)?)
+    }
 }
 
 /// The trials that come anywhere near the best: what may stand in the place of what was taken.
-fn promise(trials: &[(usize, Trial)]) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
-    let best = trials.first().map_or(0.0, |(_, trial)| trial.log_ratio);
-    trials
+fn promise(tried: &[Tried]) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
+    let best = tried.first().map_or(0.0, |tried| tried.trial.log_ratio);
+    tried
         .iter()
-        .map(|(_, trial)| trial)
+        .map(|tried| &tried.trial)
         .filter(move |trial| trial.log_ratio > (0.15 * best).max(0.3))
         .map(|trial| (trial.guess.id(), trial.guess.shape.clone()))
 }
 
 /// Whether a trial gains more than chance and more than what does not matter.
-fn worth(trial: &Trial, best: &Judged, base: &Judged, floor_square: f64, limits: &Limits) -> bool {
-    let gained = best.held_out.mean_square() - trial.held_out.mean_square();
-    let mismatch = best.held_out.mean_square() - floor_square;
+fn worth(tried: &Tried, best: &Judged, base: &Judged, floor_square: f64, limits: &Limits) -> bool {
+    let Tried { trial, before } = tried;
+    let gained = before.mean_square() - trial.held_out.mean_square();
+    let mismatch = before.mean_square() - floor_square;
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let whole = base.held_out.mean_square() - floor_square;
     let further = !best.state.guesses.is_empty();
@@ -506,4 +512,69 @@ fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &Sha
         }
     }
     best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
+
+    /// Names that a search finds in `given`, whose sensors leave 0.3 N.
+    fn names(given: &Given) -> Vec<&'static str> {
+        let limits = Limits { max_effects: 3, excluded: Vec::new(), matters_above_n: None, sensor_floor_n: 0.3 };
+        let setting = Setting { floor_square: 0.09, ..given.setting() };
+        let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
+        found.best.state.guesses.iter().map(Guess::id).collect()
+    }
+
+    /// Noise that neighbors share, of about 0.2 N.
+    fn disturb(given: &mut Given) {
+        for (at, instant) in given.track.instants.iter_mut().enumerate() {
+            let at = at as f64;
+            instant.force_n += 0.2 * ((0.37 * at).sin() + (0.011 * at).sin());
+        }
+    }
+
+    #[test]
+    fn what_lacks_nothing_gets_no_name() {
+        let mut given = Given::of(&PROTOCOLS, &[]);
+        disturb(&mut given);
+        assert_eq!(names(&given), Vec::<&str>::new());
+    }
+
+    #[test]
+    fn a_lag_is_named_and_nothing_beside_it() {
+        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+        disturb(&mut given);
+        assert_eq!(names(&given), ["pressure-lag"]);
+    }
+
+    #[test]
+    fn a_smooth_misfit_of_the_base_calls_up_no_effect_with_a_memory() {
+        let mut given = Given::of(&PROTOCOLS, &[]);
+        disturb(&mut given);
+        for instant in &mut given.track.instants {
+            let (p, e) = (instant.moment.pressure_pa * 2e-6, instant.moment.contraction_ratio * 5.0);
+            instant.force_n += 6.0 * (2.5 * p + 2.0 * e).sin() * p;
+        }
+        assert!(names(&given).iter().all(|id| effect(id).is_some_and(|effect| effect.is_static())));
+    }
+
+    #[test]
+    fn chance_is_small_where_every_block_gains_and_one_where_none_does() {
+        let held = |blocks: Vec<f64>| HeldOut { counts: vec![10.0; blocks.len()], blocks, floor_square: 0.0 };
+        let without = held(vec![4.0, 5.0, 4.5, 5.5, 4.0, 6.0]);
+        let with = held(vec![1.0, 1.1, 1.0, 1.3, 0.9, 1.4]);
+        assert!(chance(&without, &with) < 1e-3);
+        assert!((chance(&without, &without) - 1.0).abs() < f64::EPSILON);
+    }
+
+    #[test]
+    fn what_is_gained_below_the_sensors_floor_counts_for_nothing() {
+        let held = |square: f64| HeldOut { blocks: vec![square; 8], counts: vec![10.0; 8], floor_square: 1.0 };
+        assert!(held(0.01).log_ratio(&held(0.001)) < 0.1);
+        assert!(held(100.0).log_ratio(&held(1.0)) > 20.0);
+    }
 }

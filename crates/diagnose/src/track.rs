@@ -129,7 +129,7 @@ impl Track {
     }
 
     /// Thins out what counts.
-    fn sample(&mut self) {
+    pub(crate) fn sample(&mut self) {
         let stride = (self.n_counted() / LEAST_SAMPLED).clamp(1, MOST_SPARSE);
         self.sampled = self.counted.clone();
         for range in &self.recordings {
