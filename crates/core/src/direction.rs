@@ -68,8 +68,13 @@ pub struct Thresholds {
     pub length_m: f64,
     /// Likewise for the pressure, where the length stands still, in Pa.
     pub pressure_pa: f64,
-    /// What friction does while the length stands still.
+    /// What friction does while the length stands still; models that do not say follow the pressure at once.
+    #[serde(default = "at_once")]
     pub standstill: Standstill,
+}
+
+fn at_once() -> Standstill {
+    Standstill::AT_ONCE
 }
 
 /// What the direction follows.

@@ -129,6 +129,7 @@ pub fn search(
         looked();
         if looks == 0 {
             first = tried.iter().map(|tried| tried.trial.clone()).collect();
+            first.extend(look.smooth_statics(&best)?);
         }
         looks += 1;
         known = promise(&tried).collect();
@@ -243,6 +244,14 @@ impl Look<'_> {
         let takes = |id: &str| self.allows(id) && effect(id).is_some_and(wanted);
         let trials = trial::among(&beside, &bent.state, &before.held_out, self.seen, known, &takes);
         Some(trials.into_iter().map(|trial| Tried { trial, before: before.held_out.clone() }).collect())
+    }
+
+    /// Smooth static effects on top of `best` without the map that stands for them all.
+    fn smooth_statics(&self, best: &Judged) -> Option<Vec<Trial>> {
+        let bare = judged(self.plain, self.plain.fit_near(best.state.guesses.clone(), &best.state)?)?;
+        let smooth =
+            |id: &str| self.allows(id) && effect(id).is_some_and(|effect| effect.is_static() && !effect.is_local());
+        Some(trial::among(self.plain, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &smooth))
     }
 
     /// `best` with the static effect that stands for the static map, if there is one.

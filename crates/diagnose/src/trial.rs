@@ -36,16 +36,23 @@ const EVENT_CHARGE: f64 = 0.5;
 /// else of that shape is likelier.
 const PRESSED_CHARGE: f64 = 0.7;
 
-/// Share of its evidence that an effect keeps whose shape has shrunk to the least that its page has: what is smaller still
-/// is no longer that effect.
+/// Share of its evidence that an effect keeps whose shape is at an end of its range: what lies beyond is no longer that
+/// effect.
 const DEGENERATE_CHARGE: f64 = 0.2;
 
-/// Whether a shape has shrunk to the lower end of a range that does not begin at zero.
+/// Whether a shape is at an end of its range, other than at zero.
 fn is_degenerate(guess: &Guess) -> bool {
     let mut shapes = guess.effect.shape().iter().zip(&guess.shape);
-    guess.effect.kind() != Kind::Event
-        && shapes.any(|(parameter, &value)| parameter.range.0 > 0.0 && value <= 1.05 * parameter.range.0)
+    let at_an_end = |(low, high): (f64, f64), value: f64| {
+        let near = 1e-3 * (high - low);
+        (low != 0.0 && value <= low + near.min(0.05 * low.abs())) || value >= high - near
+    };
+    guess.effect.kind() != Kind::Event && shapes.any(|(parameter, &value)| at_an_end(parameter.range, value))
 }
+
+/// Share of its evidence that an effect loses for every parameter beyond the first: of two that explain as much, the simpler
+/// one is named.
+const FREEDOM_CHARGE: f64 = 0.02;
 
 /// Shapes that were best when a candidate was last looked at, by its id.
 pub type Shapes = BTreeMap<&'static str, Vec<f64>>;
@@ -127,7 +134,9 @@ pub fn among(
             let looked_for = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
             let strained = if is_pressed { PRESSED_CHARGE } else { 1.0 };
             let degenerate = if is_degenerate(&guess) { DEGENERATE_CHARGE } else { 1.0 };
-            let log_ratio = looked_for * strained * degenerate * before.log_ratio(&held_out);
+            let n_parameters = guess.effect.shape().len() + guess.amplitudes().len();
+            let freedom = 1.0 - FREEDOM_CHARGE * n_parameters.saturating_sub(1) as f64;
+            let log_ratio = looked_for * strained * degenerate * freedom * before.log_ratio(&held_out);
             Some(Trial { guess, mean_square, held_out, log_ratio })
         })
         .collect();

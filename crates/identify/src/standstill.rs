@@ -82,7 +82,9 @@ fn condensed(
         let chunk = samples.chunk(row / CHUNK_ROWS)?;
         while row < chunk.first_row() + chunk.n_rows() {
             let here = row - chunk.first_row();
-            if direction.is_settled(row) || !direction.is_known(row) {
+            // What was left out of every fit, a spike say, is left out here.
+            let counts = |direction: &Direction| direction.is_settled(row) || !direction.is_known(row);
+            if counts(&direction) && counts(&prepared.direction) {
                 let values = columns.row(chunk.pressure_pa()[here], chunk.length_m()[here], direction.sign(row));
                 let force_n = chunk.force_n()[here];
                 if force_n.is_finite() && values.iter().all(|value| value.is_finite()) {

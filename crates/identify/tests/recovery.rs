@@ -6,7 +6,7 @@
 #![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
 
 use pam_core::artifact::Tool;
-use pam_core::artifact::model::{Loss, ModelArtifact};
+use pam_core::artifact::model::{Assumed, BladderLaw, FrictionLaw, Loss, ModelArtifact};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
 use pam_core::recording::{Recording, Repairs, Samples};
@@ -88,7 +88,8 @@ fn identify(muscle: &TrueMuscle, seed: u64, noise: f64) -> ModelArtifact {
         bladder_ratio: LATEX_RATIO,
         length_play_m: None,
         pressure_play_pa: None,
-        assumed: pam_core::artifact::model::Assumed::default(),
+        // The bench's muscles have rubber of one share and one friction; what is free beside would share their errors.
+        assumed: Assumed { bladder: Some(BladderLaw::Shared), friction: Some(FrictionLaw::Rubber), standstill: None },
         accept_implausible: false,
         unbounded: false,
     })

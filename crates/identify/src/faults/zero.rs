@@ -1,7 +1,7 @@
 //! A gauge whose zero is elsewhere, after a fit that ended where no muscle is.
 //!
 //! The fit is repeated from where it ended with pressures a little lower or higher. Where that leaves less than half of the
-//! residual, the gauge reads too much or too little by as much, a hundred kilopascals of it being the atmosphere; or the
+//! residual beyond the sensors' noise, the gauge reads too much or too little by as much, a hundred kilopascals of it being the atmosphere; or the
 //! muscle has a threshold pressure, which does the same to all pressures above it. Recordings of the vented muscle tell the
 //! one from the other, and so both are said.
 
@@ -20,7 +20,7 @@ const HIGHEST_PA: f64 = 120e3;
 const PITCH_PA: f64 = 10e3;
 /// Samples of all recordings that take part, about.
 const SAMPLES: usize = 4000;
-/// Share of the RMSE that must be left at most.
+/// Share of the RMSE beyond the sensors' noise that must be left at most.
 const LEFT: f64 = 0.5;
 /// The atmosphere, in Pa, and what weather, height and the fit may add to it or take from it.
 const ATMOSPHERE_PA: f64 = 101.3e3;
@@ -64,7 +64,9 @@ pub fn explain(found: &Identified) -> io::Result<Option<String>> {
         take(here_pa + pitch_pa);
     }
     let (shift_pa, left_n) = best;
-    if left_n.is_nan() || left_n >= LEFT * as_is_n {
+    // Below what the sensors leave there is nothing to explain.
+    let excess = |rmse_n: f64| (rmse_n * rmse_n - found.noise_floor_n.powi(2)).max(0.0);
+    if left_n.is_nan() || excess(left_n) >= LEFT * LEFT * excess(as_is_n) {
         return Ok(None);
     }
     let lowest_pa = samples.iter().map(|sample| sample.0).fold(f64::INFINITY, f64::min);
