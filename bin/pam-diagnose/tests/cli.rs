@@ -112,12 +112,14 @@ impl Desk {
             .unwrap()
     }
 
-    /// Diagnosis and model of a run that must end with `code`; 1 is right as well where a mismatch is explained in part, which
-    /// reversals alone bring about.
+    /// Diagnosis and model of a run that must end with `code`; 1 is right as well where something is named and something is left,
+    /// which reversals alone bring about.
     fn diagnosed(&self, arguments: &str, code: i32) -> (DiagnosisArtifact, ModelArtifact) {
         let output = self.run(arguments);
         let (diagnosis, _) = DiagnosisArtifact::read(&self.path("diagnosis.json")).unwrap();
-        let code = if diagnosis.verdict == Verdict::ExplainedInPart { 1 } else { code };
+        let named = !diagnosis.effects.is_empty();
+        let in_part = matches!(diagnosis.verdict, Verdict::ExplainedInPart | Verdict::Unexplained) && named;
+        let code = if in_part { 1 } else { code };
         assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&output.stderr));
         let (model, _) = ModelArtifact::read(&self.path("augmented.json")).unwrap();
         (diagnosis, model)
@@ -206,7 +208,8 @@ fn a_length_that_is_held_says_nothing_of_its_delay() {
         let mut csv = "time_s,pressure_kPa,length_mm,force_N\n".to_owned();
         for row in 0..4000 {
             let time_s = 0.01 * f64::from(row);
-            let pressure_kpa = |time_s: f64| 250.0 - 200.0 * (3.0 * time_s).cos();
+            // Slow and fast together: at one rate alone a delay is as good as friction.
+            let pressure_kpa = |time_s: f64| 250.0 - 100.0 * (0.7 * time_s).cos() - 90.0 * (4.3 * time_s).cos();
             let force_n = model.settled_force_n(1e3 * pressure_kpa(time_s), 1e-3 * length_mm, 0.0);
             writeln!(
                 csv,
@@ -228,7 +231,7 @@ fn a_length_that_is_held_says_nothing_of_its_delay() {
     let parameters = &model.effects[0].parameters;
     assert!((parameters[0].value - 0.02).abs() < 1e-3, "{parameters:?}");
     assert_eq!(parameters[1].value, 0.0, "{parameters:?}");
-    assert!(parameters[1].stderr.is_none_or(|stderr_s| stderr_s > 1e-3), "{parameters:?}");
+    assert!(parameters[1].stderr.is_none_or(|stderr_s| stderr_s > 5e-4), "{parameters:?}");
 }
 
 #[test]

@@ -10,7 +10,8 @@
 //! What friction does where the length stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
 //! keeps its last sign, or the strands slide under rising (+1, as if contracting) and falling pressure (-1), at once or only
 //! after the pressure has turned back by some amount. At the beginning of a segment nothing is known of it until the first
-//! motion: the state is zero there and the samples are unsettled.
+//! motion: the state is zero there and the samples are unsettled. In a segment in which nothing ever moves it stays zero, and
+//! its samples count.
 //!
 //! # Design
 //! The play acts on a centered moving average, because the range that white noise covers grows without end:
@@ -113,6 +114,7 @@ impl Direction {
         };
         for segment in &recording.segments {
             let mut carried = Bounds::UNKNOWN;
+            let first = all.states.len();
             for start in segment.clone().step_by(STRETCH_ROWS) {
                 let end = (start + STRETCH_ROWS).min(segment.end);
                 let (time_s, pressure_pa, length_m) = rows(recording, start, end)?;
@@ -123,6 +125,11 @@ impl Direction {
                     all.settled.push(is_settled && bounds.is_known());
                     all.known.push(bounds.is_known());
                 }
+            }
+            // Friction that nothing ever moves is none that could be told from a constant force.
+            if !all.known[first..].contains(&true) {
+                all.known[first..].fill(true);
+                all.settled[first..].fill(true);
             }
         }
         Ok(all)
@@ -246,21 +253,35 @@ fn states_of(
     play(&contraction, &shortening, thresholds.length_m, half, carried.sign(), &mut marks);
     let pressure = moving_average(pressure_pa, half);
     let resting = standstills(time_s, &contraction, thresholds.length_m);
+    let moved = |still: &std::ops::Range<usize>| range(&pressure[still.clone()]) > thresholds.pressure_pa;
+    let resting: Vec<(std::ops::Range<usize>, bool)> =
+        resting.into_iter().map(|still| (still.clone(), moved(&still))).collect();
+    if let Standstill::Slides { over_pa } = thresholds.standstill
+        && over_pa <= 2.0 * thresholds.pressure_pa
+    {
+        // A standstill in which the pressure rests as well keeps what the length says.
+        for (still, _) in resting.iter().filter(|(_, moved)| *moved) {
+            let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried.sign() };
+            let (smooth, raw) = (&pressure[still.clone()], &pressure_pa[still.clone()]);
+            marks[still.clone()].fill(0);
+            play(smooth, raw, thresholds.pressure_pa, half, before, &mut marks[still.clone()]);
+            let last = marks[still.end - 1].signum();
+            marks[still.end..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
+        }
+    }
+    let stills: Vec<std::ops::Range<usize>> = resting.iter().map(|(still, _)| still.clone()).collect();
     let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
-    slow.doubt(&resting, thresholds, &mut marks);
+    slow.doubt(&stills, thresholds, &mut marks);
     let mut states = from_marks(&marks, carried);
-    if let Standstill::Slides { over_pa } = thresholds.standstill {
-        // Less than the noise of the pressure is no way.
-        let over_pa = over_pa.max(2.0 * thresholds.pressure_pa);
-        for still in resting {
-            // A standstill in which the pressure rests as well keeps what the length says.
-            if range(&pressure[still.clone()]) > thresholds.pressure_pa {
-                let before = if still.start > 0 { states[still.start - 1].bounds } else { carried };
-                slide(&pressure[still.clone()], over_pa, before, &mut states[still.clone()]);
-                let after = states[still.end - 1];
-                let unmoved = marks[still.end..].iter().take_while(|mark| **mark == 0).count();
-                states[still.end..still.end + unmoved].fill(after);
-            }
+    if let Standstill::Slides { over_pa } = thresholds.standstill
+        && over_pa > 2.0 * thresholds.pressure_pa
+    {
+        for (still, _) in resting.into_iter().filter(|(_, moved)| *moved) {
+            let before = if still.start > 0 { states[still.start - 1].bounds } else { carried };
+            slide(&pressure[still.clone()], over_pa, before, &mut states[still.clone()]);
+            let after = states[still.end - 1];
+            let unmoved = marks[still.end..].iter().take_while(|mark| **mark == 0).count();
+            states[still.end..still.end + unmoved].fill(after);
         }
     }
     states

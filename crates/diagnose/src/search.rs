@@ -1,7 +1,7 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::{Effect, Kind, Seen, effect};
+use pam_core::effects::{CATALOGUE, Effect, Kind, Seen, effect};
 
 use crate::coordinates::Coordinates;
 use crate::forms;
@@ -130,6 +130,7 @@ pub fn search(
         if looks == 0 {
             first = tried.iter().map(|tried| tried.trial.clone()).collect();
             first.extend(look.smooth_statics(&best)?);
+            first.extend(look.not_tried(&best, &first));
         }
         looks += 1;
         known = promise(&tried).collect();
@@ -244,6 +245,21 @@ impl Look<'_> {
         let takes = |id: &str| self.allows(id) && effect(id).is_some_and(wanted);
         let trials = trial::among(&beside, &bent.state, &before.held_out, self.seen, known, &takes);
         Some(trials.into_iter().map(|trial| Tried { trial, before: before.held_out.clone() }).collect())
+    }
+
+    /// What could not be tried on these recordings at all, as what gains nothing.
+    fn not_tried(&self, best: &Judged, tried: &[Trial]) -> Vec<Trial> {
+        let is_missing = |effect: &&&'static dyn Effect| {
+            let id = effect.page().id;
+            self.allows(id) && tried.iter().all(|trial| trial.guess.id() != id)
+        };
+        let nothing = |&effect: &&'static dyn Effect| {
+            let shape = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
+            let guess = Guess { effect, shape, sign: Guess::signs(effect)[0] };
+            let mean_square = best.state.fit.mean_square;
+            Trial { guess, mean_square, held_out: best.held_out.clone(), log_ratio: 0.0 }
+        };
+        CATALOGUE.iter().filter(is_missing).map(nothing).collect()
     }
 
     /// Smooth static effects on top of `best` without the map that stands for them all.
