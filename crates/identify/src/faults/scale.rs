@@ -26,8 +26,8 @@ use crate::prepare::Gated;
 
 /// Gains that a muscle, a gauge and a load cell in order may have together.
 const GAINS: (f64, f64) = (0.6, 1.3);
-/// Gains beyond which there is something wrong for certain.
-const BEYOND: (f64, f64) = (0.28, 2.7);
+/// Gains beyond which there is something wrong for certain: the largest k₁ of a muscle, 1.1, in pounds is 0.25.
+const BEYOND: (f64, f64) = (0.25, 2.7);
 /// Share of the force that the sum has to explain.
 const EXPLAINED: f64 = 0.8;
 /// What a bladder has, for the column `B`, in Pa.
