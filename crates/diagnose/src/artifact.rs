@@ -105,7 +105,7 @@ impl Diagnosis {
     pub fn weigh(&mut self, agreement: &Agreement) {
         let left_n = together(&agreement.estimation).rmse_all_n;
         let sensors_n = self.sizes.sensors_n;
-        if self.verdict == Verdict::Explained && left_n > MOST_OF_SENSORS * sensors_n {
+        if self.verdict == Verdict::Explained && left_n > EXPLAINED_WITHIN * sensors_n {
             self.verdict = Verdict::ExplainedInPart;
             self.statement.push_str(&format!(
                 " Over all samples {left_n:.2} N are left, where the sensors alone leave {sensors_n:.2} N."
@@ -356,7 +356,7 @@ impl Diagnosis {
 }
 
 /// Times the sensors' noise that may be left of what is called explained.
-const MOST_OF_SENSORS: f64 = 1.5;
+const EXPLAINED_WITHIN: f64 = 1.5;
 
 /// All recordings together; a diagnosis has at least one.
 fn together(evaluation: &Evaluation) -> FitStatistics {

@@ -178,10 +178,9 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
 
     let correlated = correlated_instants(&setting, &setting.residuals_n(state));
-    let (effects, entries) = named(&setting, &found, &uncertainty, correlated, knocks.as_ref());
+    let (effects, mut entries) = named(&setting, &found, &uncertainty, correlated, knocks.as_ref());
     let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
     let mut terms = state.terms();
-    let (effects, mut entries) = (effects, entries);
     if let Some(map) = found.nuisance.map_term(&state.fit.nuisances, &track, &found.coordinates) {
         entries.push(map_entry(&map));
         terms.push(map);

@@ -16,15 +16,24 @@ use crate::state::{Setting, State};
 /// By how much a shape bends to either side.
 const FACTORS: [f64; 2] = [0.5, 2.0];
 
-/// `nuisance` with the other forms of everything that was named in `state`.
-pub fn with_forms(setting: &Setting<'_>, state: &State, coordinates: &Coordinates, nuisance: &Nuisance) -> Nuisance {
-    let mut out = nuisance.clone();
-    for place in 0..state.guesses.len() {
-        if state.guesses[place].effect.kind() != Kind::Event {
-            out = out.with_forms(place, forms_n(setting, state, coordinates, place), &setting.track.counted);
-        }
+/// Other forms of everything that was named in a state, worked out once for every set of nuisances beside which they stand.
+pub struct Forms {
+    /// One set of columns for each effect that bends.
+    columns_n: Vec<Vec<Vec<f64>>>,
+}
+
+impl Forms {
+    /// Of what was named in `state`.
+    pub fn of(setting: &Setting<'_>, state: &State, coordinates: &Coordinates) -> Self {
+        let bends = |place: &usize| state.guesses[*place].effect.kind() != Kind::Event;
+        let places = (0..state.guesses.len()).filter(bends);
+        Self { columns_n: places.map(|place| forms_n(setting, state, coordinates, place)).collect() }
     }
-    out
+
+    /// `nuisance` with them.
+    pub fn beside(&self, nuisance: &Nuisance, counted: &[bool]) -> Nuisance {
+        self.columns_n.iter().fold(nuisance.clone(), |out, columns| out.with_forms(columns.clone(), counted))
+    }
 }
 
 /// Force of the other forms of the effect at `place`, each less what it adds as it is named, in N at every instant.

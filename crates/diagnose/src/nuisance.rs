@@ -20,6 +20,7 @@ use pam_core::force::ForceModel;
 use pam_core::force::rubber_friction::normal_force_n;
 
 use crate::coordinates::Coordinates;
+use crate::structure;
 use crate::track::Track;
 
 /// A kind of nuisance.
@@ -33,8 +34,8 @@ pub enum Group {
     Tare,
     /// Friction that turns over a little later than the length.
     Reversal,
-    /// Other forms of a named effect, by its place among the guesses.
-    Form(usize),
+    /// Other forms of a named effect.
+    Form,
 }
 
 /// Columns of nuisances over the instants of a track.
@@ -95,19 +96,6 @@ impl Nuisance {
         (0..n_instants).map(sum).collect()
     }
 
-    /// Root mean square of what `coefficients` of the groups that `takes` lets through add over the instants that count.
-    pub fn size_n(&self, coefficients: &[f64], counted: &[bool], takes: impl Fn(Group) -> bool) -> f64 {
-        let kept: Vec<usize> =
-            self.groups.iter().filter(|(group, _)| takes(*group)).flat_map(|(_, columns)| columns.clone()).collect();
-        let (mut squares, mut count) = (0.0, 0.0);
-        for at in (0..counted.len()).filter(|&at| counted[at]) {
-            let row = self.row(at);
-            squares += kept.iter().map(|&column| row[column] * coefficients[column]).sum::<f64>().powi(2);
-            count += 1.0;
-        }
-        (squares / f64::max(count, 1.0)).sqrt()
-    }
-
     /// With `columns` (one vector each, over all instants) of `group` behind.
     #[must_use]
     pub fn with(&self, group: Group, columns: Vec<Vec<f64>>, counted: &[bool], precision: f64) -> Self {
@@ -127,31 +115,10 @@ impl Nuisance {
         out
     }
 
-    /// Without the groups that `takes` lets through.
+    /// With `columns` as other forms of an effect that was named.
     #[must_use]
-    pub fn without(&self, takes: impl Fn(Group) -> bool) -> Self {
-        let kept: Vec<usize> =
-            self.groups.iter().filter(|(group, _)| !takes(*group)).flat_map(|(_, columns)| columns.clone()).collect();
-        let n_instants = self.rows.len().checked_div(self.n).unwrap_or(0);
-        let mut groups = Vec::new();
-        let mut from = 0;
-        for (group, columns) in self.groups.iter().filter(|(group, _)| !takes(*group)) {
-            groups.push((*group, from..from + columns.len()));
-            from += columns.len();
-        }
-        Self {
-            n: kept.len(),
-            rows: (0..n_instants).flat_map(|at| kept.iter().map(move |&column| self.row(at)[column])).collect(),
-            precision: kept.iter().map(|&column| self.precision[column]).collect(),
-            scales: kept.iter().map(|&column| self.scales[column]).collect(),
-            groups,
-        }
-    }
-
-    /// Forms of the effect at `place` among the guesses.
-    #[must_use]
-    pub fn with_forms(&self, place: usize, columns: Vec<Vec<f64>>, counted: &[bool]) -> Self {
-        self.with(Group::Form(place), columns, counted, LOOSE)
+    pub fn with_forms(&self, columns: Vec<Vec<f64>>, counted: &[bool]) -> Self {
+        self.with(Group::Form, columns, counted, LOOSE)
     }
 
     /// Tare of every recording; `floor_n` is what the sensors leave.
@@ -288,10 +255,9 @@ fn hats(knots: &[f64], value: f64) -> Vec<f64> {
         hats.fill(1.0);
         return hats;
     }
-    let above = knots.partition_point(|&knot| knot <= value).clamp(1, knots.len() - 1);
-    let share = ((value - knots[above - 1]) / (knots[above] - knots[above - 1])).clamp(0.0, 1.0);
-    hats[above - 1] = 1.0 - share;
-    hats[above] = share;
+    for (index, share) in structure::hats(knots, value, 1.0).into_iter().take(2) {
+        hats[index as usize] = share;
+    }
     hats
 }
 
@@ -352,16 +318,6 @@ mod tests {
         };
         assert!(bumpy(0.15) < 0.15, "{}", bumpy(0.15));
         assert!(bumpy(0.01) > 0.6, "{}", bumpy(0.01));
-    }
-
-    #[test]
-    fn groups_can_be_left_out_again() {
-        let given = Given::of(&["isobaric-triangles", "isometric-ramps"], &[]);
-        let coordinates = Coordinates::of(&given.track);
-        let tares = Nuisance::of_recordings(&given.track, 0.1);
-        let all = tares.with_map(&given.track, &coordinates);
-        let again = all.without(|group| matches!(group, Group::EvenMap | Group::OddMap));
-        assert_eq!((again.n(), again.row(17)), (tares.n(), tares.row(17)));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::{CATALOGUE, Effect, Kind, Seen, effect};
 
 use crate::coordinates::Coordinates;
-use crate::forms;
+use crate::forms::Forms;
 use crate::hypothesis::Guess;
 use crate::joint::HeldOut;
 use crate::nuisance::Nuisance;
@@ -78,12 +78,12 @@ const LEAST_OF_ALL: f64 = 0.04;
 /// Sum of `ln(without / with)` over held-out blocks that an effect must reach: as if one block were explained and nothing
 /// lost elsewhere.
 const LEAST_LOG_RATIO: f64 = 1.5;
-/// Mean square of what sensors leave beyond which the floor of a search is not theirs.
-const SENSORS: f64 = 4.0;
 /// The same for a further effect: what is left of those before it is everywhere.
 const FURTHER_LOG_RATIO: f64 = 3.0;
 /// The same beyond which a further effect is taken however small its share of the whole mismatch.
 const STRONG_LOG_RATIO: f64 = 8.0;
+/// Times the mean square that the sensors leave beyond which the floor of a search is not theirs.
+const SENSORS: f64 = 4.0;
 
 /// Searches; calls `looked` behind every look at the catalogue. `setting` has no nuisances yet.
 ///
@@ -163,11 +163,7 @@ pub fn search(
         let setting = if of_the_map { plain } else { &mapped };
         let found = without(setting, &best, index, &seen, &promising);
         let Some((without, rivals)) = found else { continue };
-        let with = if of_the_map {
-            judged(plain, plain.fit_near(best.state.guesses.clone(), &best.state)?)?
-        } else {
-            best.clone()
-        };
+        let with = if of_the_map { again(plain, &best)? } else { best.clone() };
         taken.push(Taken { without: without.held_out, with: with.held_out, rivals });
     }
     let (best, nuisance) = kept_map(plain, best, nuisance)?;
@@ -184,7 +180,7 @@ const WORTH_A_MAP: f64 = 0.02;
 
 /// `best` with the static map, or without where it gains nothing on held-out blocks.
 fn kept_map(plain: &Setting<'_>, best: Judged, map: Nuisance) -> Option<(Judged, Nuisance)> {
-    let bare = judged(plain, plain.fit_near(best.state.guesses.clone(), &best.state)?)?;
+    let bare = again(plain, &best)?;
     let keeps = best.held_out.mean_square() < (1.0 - WORTH_A_MAP) * bare.held_out.mean_square();
     Some(if keeps { (best, map) } else { (bare, plain.nuisance.clone()) })
 }
@@ -221,8 +217,9 @@ impl Look<'_> {
     fn trials(&self, best: &Judged, known: &Shapes) -> Option<Vec<Tried>> {
         let with_memory = |effect: &dyn Effect| !effect.is_static();
         let local = |effect: &dyn Effect| effect.is_static() && effect.is_local();
-        let mut tried = self.beside(best, self.free, known, &with_memory)?;
-        tried.extend(self.beside(best, self.mapped.nuisance, known, &local)?);
+        let forms = Forms::of(self.mapped, &best.state, self.coordinates);
+        let mut tried = self.beside(best, &forms, self.free, known, &with_memory)?;
+        tried.extend(self.beside(best, &forms, self.mapped.nuisance, known, &local)?);
         tried.sort_by(|left, right| right.trial.log_ratio.total_cmp(&left.trial.log_ratio));
         Some(tried)
     }
@@ -230,16 +227,15 @@ impl Look<'_> {
     fn beside(
         &self,
         best: &Judged,
+        forms: &Forms,
         map: &Nuisance,
         known: &Shapes,
         wanted: &(dyn Fn(&dyn Effect) -> bool + Sync),
     ) -> Option<Vec<Tried>> {
-        let fitted =
-            |setting: &Setting<'_>| judged(setting, setting.fit_near(best.state.guesses.clone(), &best.state)?);
-        let bare = fitted(&self.plain.beside(map))?;
-        let formed = forms::with_forms(self.mapped, &best.state, self.coordinates, map);
+        let bare = again(&self.plain.beside(map), best)?;
+        let formed = forms.beside(map, &self.plain.track.counted);
         let beside = self.plain.beside(&formed);
-        let bent = fitted(&beside)?;
+        let bent = again(&beside, best)?;
         // Other forms that only follow the noise are no better than none.
         let before = if bent.held_out.mean_square() < bare.held_out.mean_square() { &bent } else { &bare };
         let takes = |id: &str| self.allows(id) && effect(id).is_some_and(wanted);
@@ -264,7 +260,7 @@ impl Look<'_> {
 
     /// Smooth static effects on top of `best` without the map that stands for them all.
     fn smooth_statics(&self, best: &Judged) -> Option<Vec<Trial>> {
-        let bare = judged(self.plain, self.plain.fit_near(best.state.guesses.clone(), &best.state)?)?;
+        let bare = again(self.plain, best)?;
         let smooth =
             |id: &str| self.allows(id) && effect(id).is_some_and(|effect| effect.is_static() && !effect.is_local());
         Some(trial::among(self.plain, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &smooth))
@@ -273,11 +269,11 @@ impl Look<'_> {
     /// `best` with the static effect that stands for the static map, if there is one.
     fn static_effect(&self, best: &Judged, floor_square: f64) -> Option<Judged> {
         // What is left of an effect that was named is none of the map's.
-        let [formed, formed_map] = [self.plain, self.mapped]
-            .map(|setting| forms::with_forms(self.mapped, &best.state, self.coordinates, setting.nuisance));
+        let forms = Forms::of(self.mapped, &best.state, self.coordinates);
+        let [formed, formed_map] =
+            [self.plain, self.mapped].map(|setting| forms.beside(setting.nuisance, &setting.track.counted));
         let (beside, beside_map) = (self.plain.beside(&formed), self.plain.beside(&formed_map));
-        let bare = judged(&beside, beside.fit_near(best.state.guesses.clone(), &best.state)?)?;
-        let with_map = judged(&beside_map, beside_map.fit_near(best.state.guesses.clone(), &best.state)?)?;
+        let (bare, with_map) = (again(&beside, best)?, again(&beside_map, best)?);
         let map = bare.held_out.mean_square() - with_map.held_out.mean_square();
         let full_floor = floor_square + self.limits.sensor_floor_n.powi(2);
         let matters = self.limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
@@ -291,7 +287,7 @@ impl Look<'_> {
             gained > OF_THE_MAP * map && trial.log_ratio > LEAST_LOG_RATIO
         })?;
         let named = settle(&beside, &bare, &chosen)?;
-        judged(self.mapped, self.mapped.fit_near(named.state.guesses.clone(), &named.state)?)
+        again(self.mapped, &named)
     }
 }
 
@@ -350,6 +346,11 @@ fn upper_tail(t: f64) -> f64 {
 pub(crate) fn judged(setting: &Setting<'_>, state: State) -> Option<Judged> {
     let held_out = setting.hold_out(&state)?;
     Some(Judged { state, held_out })
+}
+
+/// The hypothesis of `best` fitted anew in another setting.
+fn again(setting: &Setting<'_>, best: &Judged) -> Option<Judged> {
+    judged(setting, setting.fit_near(best.state.guesses.clone(), &best.state)?)
 }
 
 /// Takes a trial: joint fit, shapes of everything refined once more.

@@ -134,7 +134,7 @@ fn quantile_knots(values: &[f64], counted: &[bool], n: usize, coordinate: Coordi
 }
 
 /// Shares of the two knots around `value`, times `factor`.
-fn hats(knots: &[f64], value: f64, factor: f64) -> [(u32, f64); 4] {
+pub(crate) fn hats(knots: &[f64], value: f64, factor: f64) -> [(u32, f64); 4] {
     let last = knots.len() - 1;
     let above = knots.partition_point(|&knot| knot <= value).clamp(1, last);
     let share = ((value - knots[above - 1]) / (knots[above] - knots[above - 1])).clamp(0.0, 1.0);

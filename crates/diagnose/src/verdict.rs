@@ -27,7 +27,7 @@ pub struct Sizes {
 }
 
 /// Times the sensors' noise that may be left of a model that lacks nothing: a smooth static map follows no muscle better.
-const MOST_OF_SENSORS: f64 = 2.5;
+const CONSISTENT_WITHIN: f64 = 2.5;
 /// Share of the mismatch (mean squares) that may be left of an explanation.
 const MOST_LEFT: f64 = 0.3;
 /// The same of what matters by itself: less is what the form of an effect that is otherwise right leaves of it.
@@ -74,7 +74,7 @@ pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
     let more_than = |times: f64, share: f64| sizes.left_n > times * sizes.matters_n && sizes.share_left() > share;
     let structured = more_than(0.5, MOST_LEFT) || more_than(1.0, LEAST_LEFT);
     if found.best.state.guesses.is_empty() && !knocks {
-        let beyond_sensors = !sizes.limited && sizes.best_n > MOST_OF_SENSORS * sizes.sensors_n;
+        let beyond_sensors = !sizes.limited && sizes.best_n > CONSISTENT_WITHIN * sizes.sensors_n;
         let is_missing = sizes.mismatch_n > sizes.matters_n || beyond_sensors;
         return if is_missing { Verdict::Unexplained } else { Verdict::Consistent };
     }
