@@ -46,7 +46,7 @@ fn row(score: &Score) -> [String; 8] {
             let spots =
                 [&diagnosed.top, &diagnosed.unexplained_top].map(|spot| spot.as_ref().map_or("–".to_owned(), spell));
             (
-                format!("{:?}", diagnosed.verdict).to_lowercase(),
+                verdict_name(diagnosed.verdict),
                 named.collect::<Vec<_>>().join("; "),
                 format!("{:.0} %", 100.0 * diagnosed.unexplained_share),
                 spots.join("; left: "),
@@ -73,4 +73,9 @@ fn row(score: &Score) -> [String; 8] {
 
 fn spell(spot: &Spot) -> String {
     format!("{} {:.3} to {:.3} ({:.0} %)", spot.coordinate.name(), spot.from, spot.to, 100.0 * spot.share)
+}
+
+/// The verdict as artifacts write it.
+fn verdict_name(verdict: Verdict) -> String {
+    serde_json::to_value(verdict).ok().and_then(|name| Some(name.as_str()?.to_owned())).unwrap_or_default()
 }

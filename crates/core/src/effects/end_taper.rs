@@ -8,7 +8,12 @@
 //! F = F_base + p dV_lost/dL = F_base + p (π / 2) D (D - D₀) (dD/dL) / tan β
 //! ```
 //!
-//! and `dD/dL` is negative.
+//! and `dD/dL` is negative. Ends are no cones where the braid bulges over them: the slope `1/tan β` then changes with the
+//! diameter, to first order as
+//!
+//! ```text
+//! 1/tan β → 1/tan β + c (D - D₀) / D₀
+//! ```
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -77,9 +82,10 @@ static PAGE: Page = Page {
     name: "taper of the ends",
     summary: "At its fittings the muscle keeps its diameter at rest, so that a contracted muscle ends in two cones. They \
               hold less gas than a cylinder, and the muscle pulls less the more it has contracted.",
-    equation: "F = F_base + p (π/2) D (D - D₀) (dD/dL) / tan β",
+    equation: "F = F_base + p (π/2) D (D - D₀) (dD/dL) [1/tan β + c (D - D₀) / D₀]",
     symbols: &[
         Symbol { symbol: "1/tan β", unit: "1", meaning: "slope of the cones; 0.6 to 1.7 for β of 60° to 30°" },
+        Symbol { symbol: "c", unit: "1", meaning: "how the slope changes with the diameter; 0 for cones" },
         Symbol { symbol: "D", unit: "m", meaning: "diameter of the cylinder between them" },
         Symbol { symbol: "D₀", unit: "m", meaning: "diameter at the fittings, that of the muscle at rest" },
     ],

@@ -3,6 +3,9 @@
 //! ```text
 //! F_friction = -F_c(p, L) z,   z = Maxwell slip over δ   instead of   z = s
 //! ```
+//!
+//! Where the length stands still, the strands slide under pressure by κ times what their stretch makes (eq. 2); a muscle whose
+//! friction is held has κ = 0.
 
 use super::page::{Confusion, Page, Symbol};
 use super::slip::Follower;
@@ -72,9 +75,15 @@ static PAGE: Page = Page {
         Symbol { symbol: "z", unit: "1", meaning: "share of the full friction, in [-1, 1]" },
         Symbol { symbol: "F_c", unit: "N", meaning: "friction of eq. 11 while sliding" },
         Symbol { symbol: "x", unit: "m", meaning: "travel of the braid, rising while the muscle contracts" },
+        Symbol {
+            symbol: "κ",
+            unit: "1",
+            meaning: "slide under pressure at standstill, in units of what the stretch of the strands makes (eq. 2); 0 where \
+                      friction is held",
+        },
     ],
-    validity: "Any path; no rate dependence. In an isometric recording the travel is that of strands under pressure, \
-               4e-8 m/Pa.",
+    validity: "Any path; no rate dependence. In an isometric recording the travel is κ times that of strands that \
+               stretch under pressure.",
     source: "Vo-Minh, Tjahjowidodo, Ramon and Van Brussel (2011), IEEE/ASME Trans. Mechatronics 16(1); Al-Bender, \
              Lampaert and Swevers (2005), IEEE Trans. Automatic Control 50(11)",
     signature: "The residual sits in the first millimetres behind every reversal and changes sign with the kind of \
