@@ -30,7 +30,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         "{}: no force was recorded, so --max-rmse-n has nothing to judge",
         recording.path
     );
-    let prepared =
+    let mut prepared =
         if args.accept_implausible { prepare(recording, &artifact)? } else { prepare_plausible(recording, &artifact)? };
     if let Some(words) = spikes::warning(&prepared.recording, &prepared.quality)? {
         console.warn(words);
@@ -39,6 +39,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         console.warn(words);
     }
     let model = of_any_recording(&artifact, &console);
+    prepared.begin(model.base(), artifact.direction.standstill)?;
     // Before anything is written: a model that has no force for what was recorded leaves no file.
     let has_force = prepared.recording.samples.has_force();
     let evaluation = if has_force {

@@ -20,6 +20,7 @@
 
 use std::io;
 
+use nalgebra::{Matrix3, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -97,6 +98,8 @@ pub struct Direction {
     known: Vec<bool>,
 }
 
+/// Beginnings that are tried on either side of zero.
+const BEGINNINGS: i32 = 20;
 /// Hundredths of a state.
 const STEPS: f64 = 100.0;
 
@@ -148,6 +151,66 @@ impl Direction {
     /// Whether anything has moved since the segment of a row began.
     pub fn is_known(&self, row: usize) -> bool {
         self.known[row]
+    }
+
+    /// The same with what friction was at the beginning of every segment of `recording`, of which nothing is known but the force
+    /// recorded there: among all beginnings the one under which `force_n` (of pressure, length and state) comes nearest to
+    /// it. The samples stay unsettled. None where everything is known or no force was recorded.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn begun(
+        &self,
+        recording: &Recording,
+        standstill: Standstill,
+        force_n: &dyn Fn(f64, f64, f64) -> f64,
+    ) -> io::Result<Option<Self>> {
+        if !recording.samples.has_force() || self.known.iter().all(|known| *known) {
+            return Ok(None);
+        }
+        let mut begun = self.clone();
+        for segment in &recording.segments {
+            let unknown = self.known[segment.clone()].iter().take_while(|known| !**known).count();
+            let unknown = segment.start..segment.start + unknown;
+            if unknown.is_empty() {
+                continue;
+            }
+            let (mut pressure_pa, mut without_n, mut with_n) = (Vec::new(), Vec::new(), Vec::new());
+            for index in unknown.start / CHUNK_ROWS..unknown.end.div_ceil(CHUNK_ROWS) {
+                let chunk = recording.samples.chunk(index)?;
+                let from = unknown.start.max(chunk.first_row()) - chunk.first_row();
+                let to = unknown.end.min(chunk.first_row() + chunk.n_rows()) - chunk.first_row();
+                for row in from..to {
+                    let (pressure, length) = (chunk.pressure_pa()[row], chunk.length_m()[row]);
+                    let neither_n = force_n(pressure, length, 0.0);
+                    pressure_pa.push(pressure);
+                    without_n.push(chunk.force_n()[row] - neither_n);
+                    with_n.push(force_n(pressure, length, 1.0) - neither_n);
+                }
+            }
+            let left = |states: &[State]| -> f64 {
+                let rows = states.iter().zip(without_n.iter().zip(&with_n));
+                rows.map(|(state, (without, with))| (without - state.bounds.middle() * with).powi(2)).sum()
+            };
+            let beginnings = (-BEGINNINGS..=BEGINNINGS).map(|index| f64::from(index) / f64::from(BEGINNINGS));
+            let paths = beginnings.map(|state| {
+                let mut states = vec![State { bounds: Bounds::at(state), is_settled: false }; unknown.len()];
+                if let Standstill::Slides { over_pa } = standstill
+                    && over_pa > 0.0
+                {
+                    slide(&moving_average(&pressure_pa, 2), over_pa, Bounds::at(state), &mut states);
+                }
+                (left(&states), states)
+            });
+            if let Some((least, states)) = paths.min_by(|one, other| one.0.total_cmp(&other.0))
+                && least.is_finite()
+            {
+                for (row, state) in unknown.zip(states) {
+                    begun.states[row] = (STEPS * state.bounds.middle()).round() as i8;
+                }
+            }
+        }
+        Ok(Some(begun))
     }
 
     /// Leaves `rows` out, whose directions stay what they are.
@@ -427,12 +490,21 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
         let took = index - departed;
         let mut turn = departed.saturating_sub(took).max(extreme_at);
         let mut noticed = index;
-        let doubtful = turn.saturating_sub(3 * took + half).max(last_turn);
+        let mut doubtful = turn.saturating_sub(3 * took + half).max(last_turn);
         if took <= half {
             // Faster than the average follows: the average smears the start, the raw values show it.
             let start = (extreme_at..raw.len().min(index + half)).rev().find(|&at| near(raw[at])).unwrap_or(turn);
             turn = start.max(turn);
             noticed = noticed.max(turn);
+        }
+        let mut settled_from = noticed + half;
+        if sign != 0
+            && let reach = (index.saturating_sub(turn).max(half) + half).min(turn - last_turn)
+            && let Some(found) = Turn::of(raw, turn.min(index), reach, new_sign, threshold)
+        {
+            turn = found.row.clamp(last_turn, index);
+            doubtful = turn.saturating_sub(found.doubt).max(last_turn);
+            settled_from = turn + found.doubt;
         }
         last_turn = turn.min(index);
         if sign == 0 {
@@ -444,12 +516,100 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
             for mark in &mut marks[doubtful.min(last_turn)..last_turn] {
                 *mark = 2 * mark.signum();
             }
-            marks[last_turn..=index].fill(2 * new_sign);
-            unsettled_until = noticed + half;
+            for (row, mark) in marks.iter_mut().enumerate().take(index + 1).skip(last_turn) {
+                *mark = if row < settled_from { 2 * new_sign } else { new_sign };
+            }
+            unsettled_until = settled_from;
         }
         sign = new_sign;
         (high, high_at, low, low_at) = (value, index, value, index);
     }
+}
+
+/// Where a path turns: the vertex of the parabola or the corner of the two lines that describe it around there, whichever
+/// leaves less.
+struct Turn {
+    row: usize,
+    /// Rows by which that may be wrong: three deviations, and one row.
+    doubt: usize,
+}
+
+impl Turn {
+    /// Most values that are fitted to.
+    const MOST_VALUES: usize = 96;
+    /// Times that the window is centered on the turn that was found.
+    const ROUNDS: usize = 3;
+
+    /// The turn around `row` of `raw`, behind which it goes the way of `sign`, from as many rows on either side.
+    /// `threshold` is five deviations of the noise. None where there is none.
+    fn of(raw: &[f64], row: usize, reach: usize, sign: i8, threshold: f64) -> Option<Self> {
+        let noise = 0.2 * threshold;
+        let mut row = row;
+        let mut doubt = 0.0;
+        for _ in 0..Self::ROUNDS {
+            let reach = reach.min(row).min(raw.len() - 1 - row);
+            if reach < 4 {
+                return None;
+            }
+            let values = &raw[row - reach..=row + reach];
+            let stride = values.len().div_ceil(Self::MOST_VALUES);
+            let (vertex, corner) = (vertex(values, stride), corner(values, stride, f64::from(sign)));
+            // Of either the deviation where noise of that size lies on so many values.
+            let per_value = noise * (stride as f64 / reach as f64).sqrt();
+            let at = match (vertex, corner) {
+                (Some((left, at, bend)), other)
+                    if bend * f64::from(sign) > 0.0 && other.is_none_or(|(other, ..)| left < other) =>
+                {
+                    doubt = per_value / (bend * reach as f64);
+                    at
+                }
+                (_, Some((_, at, bend))) => {
+                    doubt = 2.0 * per_value / bend;
+                    at as f64
+                }
+                _ => return None,
+            };
+            row = (row - reach) + at.clamp(0.0, 2.0 * reach as f64).round() as usize;
+        }
+        Some(Self { row, doubt: (3.0 * doubt.abs()).ceil() as usize + 1 })
+    }
+}
+
+/// The parabola through `values`: squares that it leaves, its vertex in values from the first, its slope per value and value.
+fn vertex(values: &[f64], stride: usize) -> Option<(f64, f64, f64)> {
+    let middle = (values.len() / 2) as f64;
+    let (left, weights) = fit(values, stride, values[0], |at| Vector3::new(1.0, at - middle, (at - middle).powi(2)))?;
+    let bend = 2.0 * weights[2];
+    let at = middle - weights[1] / bend;
+    at.is_finite().then_some((left, at, bend))
+}
+
+/// The two lines through `values` that meet where they leave least and turn there the way of `sign`: squares that they leave,
+/// the corner, the change of the slope.
+fn corner(values: &[f64], stride: usize, sign: f64) -> Option<(f64, usize, f64)> {
+    let n = values.len();
+    let lines = |corner: usize| {
+        let from = corner as f64;
+        let row = |at: f64| Vector3::new(1.0, (at - from).min(0.0), (at - from).max(0.0));
+        fit(values, stride, values[corner], row).map(|(left, weights)| (left, corner, weights))
+    };
+    let corners = (n / 4..=n - 1 - n / 4).step_by(stride).filter_map(lines);
+    let (left, corner, weights) = corners.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let (before, behind) = (sign * weights[1], sign * weights[2]);
+    (behind > 0.0 && before < 0.3 * behind).then_some((left, corner, behind - before))
+}
+
+/// Least squares of every `stride`-th of `values` less `origin`: squares that are left, and weights.
+fn fit(values: &[f64], stride: usize, origin: f64, row: impl Fn(f64) -> Vector3<f64>) -> Option<(f64, Vector3<f64>)> {
+    let (mut normal, mut right, mut squares) = (Matrix3::zeros(), Vector3::zeros(), 0.0);
+    for (at, value) in values.iter().enumerate().step_by(stride) {
+        let (row, value) = (row(at as f64), value - origin);
+        normal += row * row.transpose();
+        right += row * value;
+        squares += value * value;
+    }
+    let weights = normal.cholesky()?.solve(&right);
+    Some((squares - weights.dot(&right), weights))
 }
 
 /// Stretches of at least [`STANDSTILL_S`] in which the values stay within half a threshold of where the

@@ -132,6 +132,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         excluded: config.excluded.clone(),
         matters_above_n: config.matters_above_n,
         sensor_floor_n: model.fit.noise_floor_n,
+        confirmed: !holdout.is_empty(),
     };
     // Reading the channels, each look, and what is said of the outcome; a search may end early.
     let (steps, done) = (config.max_effects as u64 + 3, std::cell::Cell::new(1));
@@ -163,8 +164,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let Answer { track, mut found, knocks, mut sizes } = answer;
     if !holdout.is_empty() && knocks.is_none() {
         let held = Track::of(&holdout, model.direction, &model.force_model())?;
-        let nuisance = found.nuisance.clone();
-        found = veto::confirmed(&question.setting(&track, &nuisance), found, &held);
+        found = veto::confirmed(&question, &track, found, &held);
         sizes = Sizes::of(&found, &question.limits);
     }
     let setting = question.setting(&track, &found.nuisance);
@@ -202,6 +202,13 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         confirm_mass(Knocks::effect(), knocks.mass_kg(), state, &model.domain)
     };
     let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(mass);
+    let (implausible, candidates) = (implausible(&setting, &found), candidates(&found, knocks.is_some()));
+    let free = space.free.iter().map(|free| free.name()).collect();
+    let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
+    let augmented = AugmentedModel::new(state.model.clone(), terms);
+    for prepared in estimation.iter_mut().chain(&mut holdout) {
+        prepared.begin(augmented.base(), model.direction.standstill)?;
+    }
     let diagnosis = Diagnosis {
         verdict,
         statement: words::statement(verdict, &effects, &sizes, &regions, &unexplained),
@@ -209,17 +216,17 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         effects,
         unexplained_share: sizes.share_left(),
         unexplained,
-        implausible: implausible(&setting, &found),
-        candidates: candidates(&found, knocks.is_some()),
+        implausible,
+        candidates,
         isolability,
         next_experiment,
         sizes,
         base: better_base(&estimation, &model, &found.base.state.model)?,
-        augmented: AugmentedModel::new(state.model.clone(), terms),
+        augmented,
         entries,
         uncertainty,
-        free: space.free.iter().map(|free| free.name()).collect(),
-        at_bound: state.fit.at_bound[..space.free.len()].to_vec(),
+        free,
+        at_bound,
         estimation,
         holdout,
         model,

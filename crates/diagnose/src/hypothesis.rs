@@ -11,6 +11,8 @@ pub struct Guess {
     pub shape: Vec<f64>,
     /// Which sign its amplitudes may have.
     pub sign: Sign,
+    /// Whether every recording begins with a memory of its own, of what went before; else with none.
+    pub carried: bool,
 }
 
 /// Which sign the amplitudes of an effect may have.
@@ -38,6 +40,11 @@ impl Guess {
     /// Every sign that `effect` has to be tried with.
     pub fn signs(effect: &dyn Effect) -> &'static [Sign] {
         if effect.has_one_sign() { &[Sign::Positive, Sign::Negative] } else { &[Sign::Any] }
+    }
+
+    /// Every beginning that `effect` has to be tried with.
+    pub fn beginnings(effect: &dyn Effect) -> &'static [bool] {
+        if effect.outlasts() { &[false, true] } else { &[false] }
     }
 
     /// Ranges of its amplitudes.

@@ -76,7 +76,9 @@ pub fn isolability(setting: &Setting<'_>, state: &State, noise_n: f64, n_indepen
         .iter()
         .enumerate()
         .flat_map(|(index, &effect)| {
-            shapes(setting, effect).into_iter().map(move |shape| (index, Guess { effect, shape, sign: Sign::Any }))
+            shapes(setting, effect)
+                .into_iter()
+                .map(move |shape| (index, Guess { effect, shape, sign: Sign::Any, carried: false }))
         })
         .collect();
     // Each form with what is left of it, in the order of the catalogue.

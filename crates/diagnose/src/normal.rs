@@ -13,7 +13,7 @@ use pam_optim::summary::{BLOCK_ROWS, Summary};
 use pulp::Arch;
 use rayon::prelude::*;
 
-use crate::nuisance::Nuisance;
+use crate::nuisance::{self, Nuisance};
 use crate::track::Track;
 
 /// Rows in coordinates in which they are well conditioned, with their products.
@@ -49,6 +49,8 @@ pub struct Extended<'a> {
     added: usize,
     /// Scale of each added column, and of the force.
     scales: Vec<f64>,
+    /// Prior precision of each added column, in units of its scale.
+    drawn: Vec<f64>,
     /// Products of each block: nuisances, columns, added columns, force.
     products: Vec<DMatrix<f64>>,
 }
@@ -184,13 +186,20 @@ impl Normal {
         (0..n).map(|row| (row..n).map(|column| self.triangle[row * n + column] * slope[column]).sum()).collect()
     }
 
-    /// With `more` columns (row-major, `k` per row) behind; `nuisance` and `slopes` are those that it was made with.
-    pub fn extend(&self, more: &[f64], k: usize, nuisance: &Nuisance, slopes: &[f64]) -> Extended<'_> {
+    /// With `more` columns (row-major, `k` per row) behind, of which the `firm` first are free and the others drawn to zero as
+    /// nuisances are; `nuisance` and `slopes` are those that it was made with.
+    pub fn extend(&self, more: &[f64], k: usize, firm: usize, nuisance: &Nuisance, slopes: &[f64]) -> Extended<'_> {
         let (q, width) = (self.q, self.n + 1);
         let scales: Vec<f64> = (0..k)
             .map(|column| {
                 let squares: f64 = self.counted.iter().map(|&at| more[at * k + column].powi(2)).sum();
                 if squares.is_finite() { squares.sqrt() } else { 0.0 }
+            })
+            .collect();
+        let drawn = (0..k)
+            .map(|column| {
+                let there = self.counted.iter().filter(|&&at| more[at * k + column] != 0.0).count();
+                if column < firm { 0.0 } else { nuisance::LOOSE / there.max(1) as f64 }
             })
             .collect();
         let inverse: Vec<f64> = scales.iter().map(|&scale| if scale > 0.0 { 1.0 / scale } else { 0.0 }).collect();
@@ -246,12 +255,12 @@ impl Normal {
                 out
             })
             .collect();
-        Extended { normal: self, added: k, scales, products }
+        Extended { normal: self, added: k, scales, drawn, products }
     }
 
     /// With nothing behind.
     pub fn alone(&self) -> Extended<'_> {
-        self.extend(&[], 0, &Nuisance::default(), &[])
+        self.extend(&[], 0, 0, &Nuisance::default(), &[])
     }
 }
 
@@ -320,6 +329,9 @@ impl Extended<'_> {
         // A ridge far below anything that the data say: it keeps what they do not say at all finite.
         for index in q..q + m {
             sum[(index, index)] += 1e-11;
+        }
+        for (index, precision) in self.drawn.iter().enumerate() {
+            sum[(q + n + index, q + n + index)] += precision;
         }
         sum[(q + m, q + m)] += 1e-12 * force_square;
         let factor = sum.cholesky()?.l().transpose();

@@ -5,6 +5,7 @@
 //! | static map     | products of Legendre polynomials in pressure and contraction, and the same times the direction of friction: what caliper, rubber and the form of eq. 11 leave of a smooth static force |
 //! | tare           | one constant per recording                                                           |
 //! | reversal       | friction within a tenth of a millimetre after each reversal: no strand turns over at once, and no length sensor tells when |
+//! | beginning      | what a named effect with a lasting memory keeps of what went before every recording |
 //! | form of effect | changes of the shape of an effect that was named, and of its size over pressure and contraction |
 //!
 //! Every column has a root mean square of one newton over the instants that count (that of a tare where it is
@@ -36,6 +37,8 @@ pub enum Group {
     Reversal,
     /// Other forms of a named effect.
     Form,
+    /// What a named effect remembers of what went before a recording.
+    Beginning,
 }
 
 /// Columns of nuisances over the instants of a track.
@@ -71,7 +74,7 @@ const FREE_EVEN: [usize; 2] = [8, 7];
 const FREE_ODD: [usize; 2] = [4, 4];
 
 /// Prior precision of the static map and of forms: hardly any, enough to keep what the data do not see finite.
-const LOOSE: f64 = 20.0;
+pub(crate) const LOOSE: f64 = 20.0;
 
 /// Instants that share an error with one, about: half a second on the grid.
 const CORRELATED: f64 = 25.0;
@@ -119,6 +122,12 @@ impl Nuisance {
     #[must_use]
     pub fn with_forms(&self, columns: Vec<Vec<f64>>, counted: &[bool]) -> Self {
         self.with(Group::Form, columns, counted, LOOSE)
+    }
+
+    /// With `columns` of what named effects remember of what went before every recording.
+    #[must_use]
+    pub fn with_beginnings(&self, columns: Vec<Vec<f64>>, counted: &[bool]) -> Self {
+        self.with(Group::Beginning, columns, counted, LOOSE)
     }
 
     /// Tare of every recording; `floor_n` is what the sensors leave.
@@ -184,6 +193,16 @@ impl Nuisance {
         let even = plane(FREE_EVEN, &|_| 1.0);
         let odd = plane(FREE_ODD, &|at| track.instants[at].moment.direction);
         self.with(Group::EvenMap, even, &track.counted, LOOSE).with(Group::OddMap, odd, &track.counted, LOOSE)
+    }
+
+    /// The same with a static map that is drawn to zero `factor` times as strongly.
+    #[must_use]
+    pub fn tightened(&self, factor: f64) -> Self {
+        let mut out = self.clone();
+        for (_, columns) in self.groups.iter().filter(|(group, _)| matches!(group, Group::EvenMap | Group::OddMap)) {
+            out.precision[columns.clone()].iter_mut().for_each(|precision| *precision *= factor);
+        }
+        out
     }
 
     /// The static map with `coefficients` as a model carries it; none where there is no map.

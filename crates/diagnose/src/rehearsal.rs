@@ -297,7 +297,12 @@ pub(crate) mod tests {
         }
 
         pub(crate) fn guess(&self, id: &str, shape: &[f64]) -> Guess {
-            Guess { effect: effect(id).expect("an id"), shape: shape.to_vec(), sign: crate::hypothesis::Sign::Any }
+            Guess {
+                effect: effect(id).expect("an id"),
+                shape: shape.to_vec(),
+                sign: crate::hypothesis::Sign::Any,
+                carried: false,
+            }
         }
 
         pub(crate) fn setting(&self) -> Setting<'_> {

@@ -2,6 +2,7 @@
 
 use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::{CATALOGUE, Effect, Kind, Seen, effect};
+use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;
 use crate::forms::Forms;
@@ -24,6 +25,8 @@ pub struct Limits {
     pub matters_above_n: Option<f64>,
     /// What sensor noise alone leaves at the full rate, in N.
     pub sensor_floor_n: f64,
+    /// Whether held-out recordings will confirm or deny what is named.
+    pub confirmed: bool,
 }
 
 /// A hypothesis with what it leaves.
@@ -102,14 +105,17 @@ pub fn search(
     let mut coordinates = Coordinates::of(track);
     let of_recordings =
         Nuisance::of_recordings(track, limits.sensor_floor_n).with_reversals(track, &coordinates, model);
-    let plain = &setting.beside(&of_recordings);
-    let base = judged(plain, plain.fit(Vec::new(), start, model)?)?;
-    let nuisance = plain.nuisance.with_map(track, &coordinates);
-    let free = plain.nuisance.with_free_map(track, &coordinates);
-    let mapped = plain.beside(&nuisance);
-    let mut best = judged(&mapped, mapped.fit_near(Vec::new(), &base.state)?)?;
-    let remainder = Remainder::of(&mapped, &best.state);
-    coordinates.replace(Coordinate::Force, telling_force_n(&mapped, &best.state, &remainder));
+    let bare = setting.beside(&of_recordings);
+    let base = judged(&bare, bare.fit(Vec::new(), start, model)?)?;
+    let mut beside = Beside::of(setting, &of_recordings, &coordinates, &base)?;
+    let mut best = again(&setting.beside(&beside.smooth), &base)?;
+    let (remainder, telling_n) = {
+        let mapped = setting.beside(&beside.smooth);
+        let remainder = Remainder::of(&mapped, &best.state);
+        let telling_n = telling_force_n(&mapped, &best.state, &remainder);
+        (remainder, telling_n)
+    };
+    coordinates.replace(Coordinate::Force, telling_n);
     let features = features(setting, &coordinates);
     let seen = Seen::of(track.instants.iter().zip(&track.counted).filter(|(_, counted)| **counted).map(|(at, _)| at));
     let every: Vec<&Feature> = features.iter().collect();
@@ -119,12 +125,13 @@ pub fn search(
         floor_square = floor_square.min(unnamed.held_out.mean_square());
     }
     let whole = best.clone();
-    let look = Look { plain, mapped: &mapped, free: &free, coordinates: &coordinates, seen: &seen, limits };
     let mut first = Vec::new();
     let mut promising = Shapes::new();
     let mut known = Shapes::new();
     let mut looks = 0;
     while best.state.guesses.len() < limits.max_effects {
+        let (plain, mapped) = (setting.beside(&beside.plain), setting.beside(&beside.smooth));
+        let look = beside.look(&plain, &mapped, &coordinates, &seen, limits);
         let tried = look.trials(&best, &known)?;
         looked();
         if looks == 0 {
@@ -135,17 +142,23 @@ pub fn search(
         looks += 1;
         known = promise(&tried).collect();
         promising.extend(known.clone());
-        for Tried { trial, .. } in &tried {
-            floor_square = floor_square.min(trial.held_out.mean_square());
+        for Tried { trial, before } in &tried {
+            // What a trial gains beside a free map says nothing of what a smooth one leaves.
+            let gained = before.mean_square() - trial.held_out.mean_square();
+            floor_square = floor_square.min((best.held_out.mean_square() - gained).max(trial.held_out.mean_square()));
         }
         let chosen = tried.iter().find(|tried| worth(tried, &best, &whole, floor_square, limits));
         let Some(next) = chosen.and_then(|chosen| settle(&mapped, &best, &chosen.trial)) else { break };
-        best = next;
+        beside = Beside::of(setting, &of_recordings, &coordinates, &next)?;
+        let mapped = setting.beside(&beside.smooth);
+        best = again(&mapped, &next)?;
         if looks > 1 {
             best = second_look(&mapped, best, &seen, &promising);
         }
         floor_square = floor_square.min(best.held_out.mean_square());
     }
+    let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
+    let look = beside.look(plain, mapped, &coordinates, &seen, limits);
     let mut parsimonious = Vec::new();
     while best.state.guesses.len() < limits.max_effects {
         let Some(next) = look.static_effect(&best, floor_square) else { break };
@@ -154,25 +167,76 @@ pub fn search(
     }
     let mismatch = whole.held_out.mean_square() - floor_square;
     if parsimonious.is_empty() {
-        best = without_stand_ins(&mapped, best, &features, mismatch);
+        best = without_stand_ins(mapped, best, &features, mismatch, limits.confirmed);
     }
-    let best = at_rest(&mapped, polished(&mapped, best)?)?;
+    let best = at_rest(mapped, polished(mapped, best)?)?;
     let mut taken = Vec::new();
     for index in 0..best.state.guesses.len() {
         let of_the_map = parsimonious.contains(&best.state.guesses[index].id());
-        let setting = if of_the_map { plain } else { &mapped };
+        let setting = if of_the_map { plain } else { mapped };
         let found = without(setting, &best, index, &seen, &promising);
         let Some((without, rivals)) = found else { continue };
         let with = if of_the_map { again(plain, &best)? } else { best.clone() };
         taken.push(Taken { without: without.held_out, with: with.held_out, rivals });
     }
-    let (best, nuisance) = kept_map(plain, best, nuisance)?;
+    let (best, nuisance) = kept_map(plain, best, beside.smooth.clone())?;
     let mapped = plain.beside(&nuisance);
     let left = Remainder::of(&mapped, &best.state).structure(&every);
     if let Some(left) = &left {
         floor_square = floor_square.min(left.held_out.mean_square());
     }
     Some(Found { base, whole, best, taken, first, coordinates, features, floor_square, left, nuisance })
+}
+
+/// What a hypothesis is judged beside.
+struct Beside {
+    /// Nuisances of the recordings alone, and what named effects remember of what went before them.
+    plain: Nuisance,
+    /// A smooth static map as well.
+    smooth: Nuisance,
+    /// A static map that bends instead.
+    free: Nuisance,
+}
+
+impl Beside {
+    /// For `best`; `of_recordings` is what is in by any means.
+    fn of(setting: &Setting<'_>, of_recordings: &Nuisance, coordinates: &Coordinates, best: &Judged) -> Option<Self> {
+        let track = setting.track;
+        let carried = best.state.guesses.iter().filter(|guess| guess.carried);
+        let plain = carried.fold(of_recordings.clone(), |nuisance, guess| {
+            nuisance.with_beginnings(setting.beginnings(&best.state, guess), &track.counted)
+        });
+        let bare = setting.beside(&plain);
+        let smooth = fitting(&bare, best, &plain.with_map(track, coordinates))?;
+        let free = fitting(&bare, best, &plain.with_free_map(track, coordinates))?;
+        Some(Self { plain, smooth, free })
+    }
+
+    fn look<'a>(
+        &'a self,
+        plain: &'a Setting<'a>,
+        mapped: &'a Setting<'a>,
+        coordinates: &'a Coordinates,
+        seen: &'a Seen,
+        limits: &'a Limits,
+    ) -> Look<'a> {
+        Look { plain, mapped, free: &self.free, coordinates, seen, limits }
+    }
+}
+
+/// How strongly a static map may be drawn to zero, in units of its loosest prior; the last leaves none of it.
+const STRENGTHS: [f64; 5] = [1.0, 10.0, 100.0, 1000.0, 1e7];
+
+/// `map` with the prior under which it foretells held-out blocks best, beside `best`: what a few recordings say of a static
+/// force somewhere is no license to bend it elsewhere.
+fn fitting(plain: &Setting<'_>, best: &Judged, map: &Nuisance) -> Option<Nuisance> {
+    let judge = |factor: f64| {
+        let tightened = map.tightened(factor);
+        Some((again(&plain.beside(&tightened), best)?.held_out.mean_square(), tightened))
+    };
+    let tried: Vec<(f64, Nuisance)> = STRENGTHS.into_par_iter().filter_map(judge).collect();
+    let found = tried.into_iter().min_by(|left, right| left.0.total_cmp(&right.0))?;
+    Some(found.1)
 }
 
 /// Share of the mean square over held-out blocks that the static map must take up to be kept.
@@ -251,7 +315,7 @@ impl Look<'_> {
         };
         let nothing = |&effect: &&'static dyn Effect| {
             let shape = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
-            let guess = Guess { effect, shape, sign: Guess::signs(effect)[0] };
+            let guess = Guess { effect, shape, sign: Guess::signs(effect)[0], carried: false };
             let mean_square = best.state.fit.mean_square;
             Trial { guess, mean_square, held_out: best.held_out.clone(), log_ratio: 0.0 }
         };
@@ -358,6 +422,14 @@ fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Option<Judged
     let sampled = setting.sampled();
     let thin = sampled.fit_near(best.state.guesses.clone(), &best.state)?;
     let (_, guess) = trial::refine(&sampled, &thin, &chosen.guess, chosen.mean_square, 1);
+    let begun = if guess.carried {
+        let beginnings = setting.beginnings(&best.state, &guess);
+        setting.nuisance.with_beginnings(beginnings, &setting.track.counted)
+    } else {
+        setting.nuisance.clone()
+    };
+    let setting = &setting.beside(&begun);
+    let sampled = setting.sampled();
     let mut state = trial::with(&sampled, &thin, &guess)?;
     if state.guesses.len() > 1 {
         state = refine_all(&sampled, state)?;
@@ -476,7 +548,7 @@ const STANDS_FOR_ITSELF: f64 = 0.5;
 /// Lets go of effects that only stand in for something without a name: where structure over one coordinate is left, an effect
 /// that gains less than that structure holds, or little beside a free function of that coordinate, was the nearest name, and
 /// the wrong one.
-fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], whole: f64) -> Judged {
+fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], whole: f64, confirmed: bool) -> Judged {
     let mut best = best;
     loop {
         let remainder = Remainder::of(setting, &best.state);
@@ -492,6 +564,11 @@ fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], 
             return best;
         }
         let stand_in = (0..best.state.guesses.len()).find_map(|index| {
+            let effect = best.state.guesses[index].effect;
+            // Held-out recordings say it better.
+            if confirmed && !effect.is_static() && effect.kind() != Kind::Event {
+                return None;
+            }
             let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
             let gained = rest.held_out.mean_square() - best.held_out.mean_square();
             let without = Remainder::of(setting, &rest.state).structure(&[feature])?.held_out.mean_square();
@@ -499,7 +576,7 @@ fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], 
             // of that coordinate replaces, unless that is where the effect lives.
             let lives_there = best.state.guesses[index].effect.page().coordinate == feature.coordinate;
             let replaced = !lives_there && without - beside < KEPT * gained;
-            let misshapen = lives_there && !feature.odd;
+            let misshapen = lives_there && !feature.odd && best.state.guesses[index].effect.is_static();
             (misshapen || gained < STANDS_FOR_ITSELF * whole && (gained < structure || replaced)).then_some(rest)
         });
         match stand_in {
@@ -549,7 +626,13 @@ mod tests {
 
     /// Names that a search finds in `given`, whose sensors leave 0.3 N.
     fn names(given: &Given) -> Vec<&'static str> {
-        let limits = Limits { max_effects: 3, excluded: Vec::new(), matters_above_n: None, sensor_floor_n: 0.3 };
+        let limits = Limits {
+            max_effects: 3,
+            excluded: Vec::new(),
+            matters_above_n: None,
+            sensor_floor_n: 0.3,
+            confirmed: false,
+        };
         let setting = Setting { floor_square: 0.09, ..given.setting() };
         let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
         found.best.state.guesses.iter().map(Guess::id).collect()

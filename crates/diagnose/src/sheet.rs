@@ -136,6 +136,43 @@ impl Ground<'_> {
     }
 }
 
+impl Ground<'_> {
+    /// By how much the columns of `guess` differ in every recording where the same recording went before; none of what is
+    /// constant over a recording, which its tare stands for.
+    pub fn beginnings(&self, sheet: &Sheet, guess: &Guess, model: &ForceModel) -> Vec<Vec<f64>> {
+        let n = guess.amplitudes().len();
+        let mut columns = Vec::new();
+        for range in &self.track.recordings {
+            let moments = &sheet.seen[range.clone()];
+            let (Some(first), Some(last)) = (moments.first(), moments.last()) else { continue };
+            let lasted_s = last.time_s - first.time_s;
+            let mut memory = guess.effect.start(model.muscle(), &guess.shape);
+            let mut pass = |later_s: f64| {
+                let mut rows = vec![0.0; range.len() * n];
+                for ((moment, base), row) in
+                    moments.iter().zip(&sheet.base[range.clone()]).zip(rows.chunks_exact_mut(n))
+                {
+                    memory.pulls(&Moment { time_s: moment.time_s + later_s, ..*moment }, base, row);
+                }
+                rows
+            };
+            let (once, again) = (pass(0.0), pass(lasted_s));
+            for amplitude in 0..n {
+                let change = |row: usize| again[row * n + amplitude] - once[row * n + amplitude];
+                let (low, high) = (0..range.len())
+                    .map(change)
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |range, value| (range.0.min(value), range.1.max(value)));
+                if high - low > 1e-3 * high.abs().max(low.abs()) {
+                    let mut column = vec![0.0; self.track.n()];
+                    (0..range.len()).for_each(|row| column[range.start + row] = change(row));
+                    columns.push(column);
+                }
+            }
+        }
+        columns
+    }
+}
+
 /// Rows of one recording.
 struct Part<'a> {
     range: Range<usize>,

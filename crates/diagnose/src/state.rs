@@ -20,6 +20,9 @@ const LEAST_SLOPE: f64 = 1e-6;
 /// A slope that changes by more has not settled.
 const SLOPE_MOVED: f64 = 0.1;
 
+/// How often what a recording does may have gone before it, at most.
+const LONGEST_BEFORE: f64 = 10.0;
+
 /// What every fit of a diagnosis shares.
 #[derive(Debug)]
 pub struct Setting<'a> {
@@ -273,17 +276,51 @@ impl<'a> Setting<'a> {
         Some((joint.fit_all(&rows, &state.fit.x)?, held_out))
     }
 
-    fn extended<'b>(&self, state: &'b State, rows: &[f64], guess: &Guess) -> Extended<'b> {
-        state.normal.extend(rows, guess.amplitudes().len(), self.nuisance, &state.read.slopes)
+    /// Mean squares of `state` over held-out blocks with what `guess` leaves of what went before every recording, but without
+    /// the guess itself.
+    pub fn weigh_beginnings(&self, state: &State, guess: &Guess) -> Option<HeldOut> {
+        let own = guess.amplitudes().len();
+        let (rows, mut limits) = self.more(state, guess);
+        let width = rows.len() / self.track.n();
+        let rows: Vec<f64> = rows.chunks_exact(width).flat_map(|row| row[own..].iter().copied()).collect();
+        let n_before = crate::hypothesis::n_amplitudes(&state.guesses);
+        limits.drain(n_before..n_before + own);
+        let rows = state.normal.extend(&rows, width - own, 0, self.nuisance, &state.read.slopes);
+        self.joint(&limits).hold_out(&rows, &state.fit.x, &self.track.fold_of_block)
     }
 
-    /// Columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes.
+    fn extended<'b>(&self, state: &'b State, rows: &[f64], guess: &Guess) -> Extended<'b> {
+        let width = rows.len() / self.track.n();
+        state.normal.extend(rows, width, guess.amplitudes().len(), self.nuisance, &state.read.slopes)
+    }
+
+    /// Columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes; where it is carried,
+    /// what it begins with in every recording stands behind them.
     fn more(&self, state: &State, guess: &Guess) -> (Vec<f64>, Vec<(f64, f64)>) {
-        let rows = self.ground().more_columns(&state.sheet, guess, &state.model);
-        let rows = state.read.scaled(rows, guess.amplitudes().len());
+        let mut rows = self.ground().more_columns(&state.sheet, guess, &state.model);
         let mut limits = ranges(&state.guesses);
         limits.extend(guess.ranges());
-        (rows, limits)
+        let mut width = guess.amplitudes().len();
+        if guess.carried {
+            let beginnings = self.beginnings(state, guess);
+            let largest = guess.amplitudes().iter().map(|amplitude| amplitude.range.1).fold(0.0, f64::max);
+            limits.extend(beginnings.iter().map(|_| (-LONGEST_BEFORE * largest, LONGEST_BEFORE * largest)));
+            let joined = width + beginnings.len();
+            rows = (0..self.track.n())
+                .flat_map(|at| {
+                    let own = rows[at * width..(at + 1) * width].iter().copied();
+                    own.chain(beginnings.iter().map(move |column| column[at]))
+                })
+                .collect();
+            width = joined;
+        }
+        (state.read.scaled(rows, width), limits)
+    }
+
+    /// What `guess` leaves in every recording of what went before it: a column for each recording and amplitude, in which
+    /// what went before was the same recording.
+    pub(crate) fn beginnings(&self, state: &State, guess: &Guess) -> Vec<Vec<f64>> {
+        self.ground().beginnings(&state.sheet, guess, &state.model)
     }
 
     /// Residual of every instant, measured less modelled, in N.

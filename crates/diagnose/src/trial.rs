@@ -84,9 +84,13 @@ pub fn among(
                 Some(shape) => vec![shape.clone()],
                 None => effect.first_shapes(seen),
             };
-            let signs = Guess::signs(effect);
+            let (signs, beginnings) = (Guess::signs(effect), Guess::beginnings(effect));
             shapes.into_iter().flat_map(move |shape| {
-                signs.iter().map(move |&sign| (index, Guess { effect, shape: shape.clone(), sign }))
+                signs.iter().flat_map(move |&sign| {
+                    let shape = shape.clone();
+                    let guess = move |&carried| (index, Guess { effect, shape: shape.clone(), sign, carried });
+                    beginnings.iter().map(guess)
+                })
             })
         })
         .collect();
@@ -105,12 +109,14 @@ pub fn among(
             steps::is_sudden(setting, &residuals_n, &guess.shape, *step_n).then_some(fit.mean_square)
         })
         .collect();
-    let mut best: Vec<Option<(f64, &Guess)>> = vec![None; candidates.len()];
+    // Of every beginning the best: the freer one is always nearer to what it was fitted to.
+    let mut best: Vec<Option<(f64, &Guess)>> = vec![None; 2 * candidates.len()];
     for ((index, guess), cost) in jobs.iter().zip(costs) {
+        let best = &mut best[2 * index + usize::from(guess.carried)];
         if let Some(cost) = cost
-            && best[*index].is_none_or(|(lowest, _)| cost < lowest)
+            && best.is_none_or(|(lowest, _)| cost < lowest)
         {
-            best[*index] = Some((cost, guess));
+            *best = Some((cost, guess));
         }
     }
     let mut found: Vec<(f64, Guess)> = best.into_iter().flatten().map(|(cost, guess)| (cost, guess.clone())).collect();
@@ -134,13 +140,26 @@ pub fn among(
             let looked_for = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
             let strained = if is_pressed { PRESSED_CHARGE } else { 1.0 };
             let degenerate = if is_degenerate(&guess) { DEGENERATE_CHARGE } else { 1.0 };
-            let n_parameters = guess.effect.shape().len() + guess.amplitudes().len();
+            let beginnings = if guess.carried { setting.track.recordings.len() } else { 0 };
+            let n_parameters = guess.effect.shape().len() + guess.amplitudes().len() + beginnings;
             let freedom = 1.0 - FREEDOM_CHARGE * n_parameters.saturating_sub(1) as f64;
-            let log_ratio = looked_for * strained * degenerate * freedom * before.log_ratio(&held_out);
+            let mut evidence = before.log_ratio(&held_out);
+            if guess.carried {
+                // What only the beginnings gain says that recordings differ, not by what.
+                let begun = setting.weigh_beginnings(state, &guess)?;
+                evidence = evidence.min(begun.log_ratio(&held_out));
+            }
+            let log_ratio = looked_for * strained * degenerate * freedom * evidence;
             Some(Trial { guess, mean_square, held_out, log_ratio })
         })
         .collect();
     trials.sort_by(|left, right| right.log_ratio.total_cmp(&left.log_ratio));
+    let mut known: Vec<&str> = Vec::new();
+    trials.retain(|trial| {
+        let is_first = !known.contains(&trial.guess.id());
+        known.push(trial.guess.id());
+        is_first
+    });
     trials
 }
 
@@ -152,7 +171,7 @@ fn weigh(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<(HeldOut
     }
     let (fit, held_out) = setting.weigh_more(state, guess)?;
     let amplitudes = guess.amplitudes();
-    let own = &fit.amplitudes[fit.amplitudes.len() - amplitudes.len()..];
+    let own = &fit.amplitudes[crate::hypothesis::n_amplitudes(&state.guesses)..];
     let is_pressed = own.iter().zip(amplitudes).any(|(value, amplitude)| {
         let (low, high) = amplitude.range;
         let near = 1e-3 * (high - low);

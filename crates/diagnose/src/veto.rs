@@ -1,79 +1,139 @@
 //! What was held out confirms or vetoes what was named.
+//!
+//! The force of an effect, as it was fitted, is predicted on recordings that nothing was fitted to, and compared there with
+//! what the base leaves beside a static map and a tare of each recording: a muscle that lies a few newtons off everywhere
+//! else, or a state that nobody knows at the start, speaks neither for the effect nor against it. What is there with less
+//! than half of its size, and surely so, was none.
 
 use pam_core::effects::{AugmentedModel, Kind, Moment};
 use pam_core::shift::shifted;
 
+use crate::coordinates::Coordinates;
 use crate::nuisance::Nuisance;
-use crate::search::{Found, Judged, judged};
+use crate::question::Question;
+use crate::search::{Found, judged};
 use crate::state::{Setting, State};
 use crate::structure::{Feature, Remainder};
 use crate::track::Track;
+use crate::uncertainty::correlated_instants;
 
-/// An effect is vetoed where the held-out error without it is less than this share of the one with it.
-const HARMS: f64 = 0.98;
+/// Share of its size that an effect must be seen with on what was held out: half way between there and not there.
+const SEEN: f64 = 0.5;
+/// Pieces of the held-out recordings that stand for independent ones.
+const PIECES: usize = 16;
+/// Standard errors by which it must fall short of that: one in forty by chance.
+const SURELY: f64 = 2.0;
 
-/// `found` without the effects that make the prediction of `heldout` worse.
-pub(crate) fn confirmed(setting: &Setting<'_>, mut found: Found, heldout: &Track) -> Found {
-    while let Some((index, rest)) = harmful(setting, &found, heldout) {
+/// `found` on `track` without the effects that `heldout` says are not there.
+pub(crate) fn confirmed(question: &Question<'_>, track: &Track, mut found: Found, heldout: &Track) -> Found {
+    let nuisance = found.nuisance.clone();
+    let setting = question.setting(track, &nuisance);
+    let coordinates = Coordinates::of(heldout);
+    let beside = Nuisance::of_recordings(heldout, question.limits.sensor_floor_n)
+        .with_reversals(heldout, &coordinates, &found.best.state.model)
+        .with_map(heldout, &coordinates);
+    let held = question.setting(heldout, &beside);
+    while let Some(index) = denied(&held, &found.best.state) {
+        let Some(rest) = setting.fit_without(&found.best.state, index).and_then(|state| judged(&setting, state)) else {
+            break;
+        };
         found.best = rest;
         if index < found.taken.len() {
             found.taken.remove(index);
         }
         let every: Vec<&Feature> = found.features.iter().collect();
-        found.left = Remainder::of(setting, &found.best.state).structure(&every);
+        found.left = Remainder::of(&setting, &found.best.state).structure(&every);
     }
     found
 }
 
-/// The effect that harms most, with what is left without it.
-fn harmful(setting: &Setting<'_>, found: &Found, heldout: &Track) -> Option<(usize, Judged)> {
-    let with = error_n(setting, found, &found.best.state, heldout)?;
-    let mut worst: Option<(f64, usize, Judged)> = None;
-    for index in 0..found.best.state.guesses.len() {
-        let effect = found.best.state.guesses[index].effect;
+/// The effect of `state` that what was held out denies most clearly.
+fn denied(held: &Setting<'_>, state: &State) -> Option<usize> {
+    let mut least: Option<(f64, usize)> = None;
+    for (index, guess) in state.guesses.iter().enumerate() {
         // An event is none of the others' recordings; in the place of a static effect the static map would do as well.
-        if effect.kind() == Kind::Event || effect.is_static() {
+        if guess.effect.kind() == Kind::Event || guess.effect.is_static() {
             continue;
         }
-        let Some(rest) = setting.fit_without(&found.best.state, index).and_then(|state| judged(setting, state)) else {
-            continue;
-        };
-        let Some(without) = error_n(setting, found, &rest.state, heldout) else { continue };
-        if without < HARMS * with && worst.as_ref().is_none_or(|(lowest, ..)| without < *lowest) {
-            worst = Some((without, index, rest));
+        let Some(most) = most_seen(held, state, index) else { continue };
+        if most < SEEN && least.is_none_or(|(lowest, _)| most < lowest) {
+            least = Some((most, index));
         }
     }
-    worst.map(|(_, index, rest)| (index, rest))
+    least.map(|(_, index)| index)
 }
 
-/// Root mean square of the residual over the settled instants of `heldout`, in N.
-fn error_n(setting: &Setting<'_>, found: &Found, state: &State, heldout: &Track) -> Option<f64> {
-    let model = with_map(setting.nuisance, setting.track, found, state).without_events();
+/// The largest share of its size with which effect `index` may be there on what was held out; none where nothing can be said.
+fn most_seen(held: &Setting<'_>, state: &State, index: usize) -> Option<f64> {
+    let whole_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), state.terms()).without_events());
+    let mut others = state.terms();
+    others.remove(index);
+    let rest_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), others).without_events());
+    let base_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), Vec::new()));
+    // What went before a recording is not known.
+    let guess = &state.guesses[index];
+    let nuisance = if guess.effect.outlasts() {
+        let moments = held.fit(Vec::new(), &state.fit.x[..held.space.free.len()], &state.model)?;
+        held.nuisance.with_beginnings(held.beginnings(&moments, guess), &held.track.counted)
+    } else {
+        held.nuisance.clone()
+    };
+    let left_of = |modelled_n: &[f64]| {
+        let mut track = held.track.clone();
+        for (instant, (modelled, base)) in track.instants.iter_mut().zip(modelled_n.iter().zip(&base_n)) {
+            instant.force_n -= modelled - base;
+        }
+        let setting = Setting { track: &track, nuisance: &nuisance, ..*held };
+        let near = &state.fit.x[..held.space.free.len()];
+        let fitted = setting.fit(Vec::new(), near, &state.model)?;
+        Some(setting.residuals_n(&fitted))
+    };
+    let (without, with) = (left_of(&rest_n)?, left_of(&whole_n)?);
+    let own: Vec<f64> = without.iter().zip(&with).map(|(without, with)| without - with).collect();
+    let counted: Vec<usize> = (0..held.track.n()).filter(|&at| held.track.counted[at]).collect();
+    let products = |places: &[usize]| {
+        let add =
+            |(product, square): (f64, f64), &at: &usize| (product + without[at] * own[at], square + own[at] * own[at]);
+        places.iter().fold((0.0, 0.0), add)
+    };
+    let (product, square) = products(&counted);
+    let share = product / square;
+    // Without one piece of the recordings after the other: what is left is hardly ever white.
+    let parts: Vec<f64> = counted
+        .chunks(counted.len().div_ceil(PIECES).max(1))
+        .map(|piece| {
+            let (piece_product, piece_square) = products(piece);
+            (product - piece_product) / (square - piece_square)
+        })
+        .collect();
+    // What would be half as large as the noise of the sensors decides nothing.
+    if square < 0.25 * held.floor_square * counted.len() as f64 {
+        return None;
+    }
+    let m = parts.len() as f64;
+    let mean = parts.iter().sum::<f64>() / m;
+    let jackknife = parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>() * (m - 1.0) / m;
+    let left: Vec<f64> = without.iter().zip(&own).map(|(without, own)| without - share * own).collect();
+    let variance = counted.iter().map(|&at| left[at].powi(2)).sum::<f64>() / counted.len().max(1) as f64;
+    // No residual is known better than the sensors.
+    let plain = correlated_instants(held, &left) * variance.max(held.floor_square) / square;
+    let most = share + SURELY * jackknife.max(plain).sqrt();
+    most.is_finite().then_some(most)
+}
+
+/// Force that `model` predicts at every instant of `track`, in N.
+fn force_n(track: &Track, model: &AugmentedModel) -> Vec<f64> {
     let delays_s = model.delays_s();
-    let (mut squares, mut count) = (0.0, 0.0);
-    for range in &heldout.recordings {
-        let instants = &heldout.instants[range.clone()];
+    let mut forces_n = Vec::with_capacity(track.n());
+    for range in &track.recordings {
+        let instants = &track.instants[range.clone()];
         let moments: Vec<Moment> = if delays_s == [0.0; 2] {
             instants.iter().map(|instant| instant.moment).collect()
         } else {
             shifted(instants, delays_s)
         };
         let mut memory = model.start();
-        for ((instant, moment), at) in instants.iter().zip(moments).zip(range.clone()) {
-            let residual_n = instant.force_n - memory.force_n(&model, moment);
-            if heldout.counted[at] {
-                squares += residual_n * residual_n;
-                count += 1.0;
-            }
-        }
+        forces_n.extend(moments.into_iter().map(|moment| memory.force_n(model, moment)));
     }
-    let error_n = f64::sqrt(squares / count);
-    error_n.is_finite().then_some(error_n)
-}
-
-/// Base, effects and the static map of `state`.
-pub(crate) fn with_map(nuisance: &Nuisance, track: &Track, found: &Found, state: &State) -> AugmentedModel {
-    let mut terms = state.terms();
-    terms.extend(nuisance.map_term(&state.fit.nuisances, track, &found.coordinates));
-    AugmentedModel::new(state.model.clone(), terms)
+    forces_n
 }

@@ -278,7 +278,7 @@ fn tally(prepared: &Prepared, model: &ForceModel) -> std::io::Result<Tally> {
 pub fn noise_floor_n(recordings: &[Prepared], model: &ForceModel) -> Result<f64, IdentifyError> {
     let (mut squares, mut rows) = (0.0, 0.0);
     for prepared in recordings {
-        let noise = |name: &str| prepared.quality.channel(name).map_or(0.0, |channel| channel.noise);
+        let noise = |name: &str| prepared.quality.channel(name).map_or(0.0, |channel| channel.colored_noise);
         let (noise_pa, noise_m, noise_n) = (noise("pressure"), noise("length"), noise("force"));
         let stride = trace_stride(prepared);
         let trace = every(

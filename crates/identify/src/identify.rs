@@ -212,7 +212,7 @@ impl Checked {
         let laws = self.judge_standstill(&estimation, &columns, thresholds)?;
         let thresholds = Thresholds { standstill: laws[0].standstill, ..thresholds };
         redirect(&mut estimation, thresholds, self.form)?;
-        let validation = direct(validation, thresholds, self.form)?;
+        let mut validation = direct(validation, thresholds, self.form)?;
         let condensed = condense(&estimation, &columns, 1, None)?;
         enough(&estimation[0].recording.path, condensed.total.n_rows() as usize)?;
         let (space, unidentifiable) = self.search_space(&columns, &condensed, force_noise_n);
@@ -232,6 +232,9 @@ impl Checked {
         };
         let uncertainty = jackknife(&problem, &found.condensed, &found.fit.x, &found.fit.at_bound);
         let model = self.model(&found.muscle, space.parameters(&found.fit.x[..space.free.len()]));
+        for prepared in estimation.iter_mut().chain(&mut validation) {
+            prepared.begin(&model, thresholds.standstill)?;
+        }
         let estimation_fit = evaluate(&estimation, &model)?;
         let validation_fit = evaluate(&validation, &model)?;
         let noise_floor_n = noise_floor_n(&estimation, &model)?;

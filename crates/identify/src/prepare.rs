@@ -1,7 +1,7 @@
 //! Recordings made ready for a fit: quality gate and direction of motion beside each.
 
 use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
-use pam_core::force::Form;
+use pam_core::force::{ForceModel, Form};
 use pam_core::muscle::Muscle;
 use pam_core::quality::{RecordingQuality, SensorEnds};
 use pam_core::recording::Recording;
@@ -28,6 +28,24 @@ pub struct Prepared {
     pub quality: RecordingQuality,
     /// Direction of motion of every row.
     pub direction: Direction,
+}
+
+impl Prepared {
+    /// Takes what friction was at the beginning of every segment from the force that was recorded there, as `model` has it:
+    /// nothing else tells. Those samples stay unsettled.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Samples`] where samples cannot be read back.
+    pub fn begin(&mut self, model: &ForceModel, standstill: Standstill) -> Result<(), IdentifyError> {
+        let force_n = |pressure_pa: f64, length_m: f64, state: f64| model.force_n(pressure_pa, length_m, state);
+        let begun = self.direction.begun(&self.recording, standstill, &force_n);
+        if let Some(begun) =
+            begun.map_err(|reason| IdentifyError::Samples { path: self.recording.path.clone(), reason })?
+        {
+            self.direction = begun;
+        }
+        Ok(())
+    }
 }
 
 /// Looks at every recording, in parallel.

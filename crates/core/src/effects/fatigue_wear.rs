@@ -39,6 +39,10 @@ impl Effect for FatigueWear {
         &[Amplitude { name: "loss_per_reference_travel", unit: "1", range: (0.0, 1.0) }]
     }
 
+    fn outlasts(&self) -> bool {
+        true
+    }
+
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         Box::new(State { exponent: shape[0], travel_m: 0.0, follower_m: 0.0 })
     }

@@ -27,7 +27,7 @@ impl Effect for ForceDrift {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "warm_up_s", unit: "s", range: (5.0, 4e3), grid: &[30.0, 120.0, 400.0] }]
+        &[Shape { name: "warm_up_s", unit: "s", range: (20.0, 4e3), grid: &[30.0, 120.0, 400.0] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
@@ -35,6 +35,10 @@ impl Effect for ForceDrift {
             Amplitude { name: "drift_n_per_s", unit: "N/s", range: (-0.5, 0.5) },
             Amplitude { name: "warm_up_n", unit: "N", range: (-50.0, 50.0) },
         ]
+    }
+
+    fn outlasts(&self) -> bool {
+        true
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {

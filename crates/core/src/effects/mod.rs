@@ -188,6 +188,11 @@ pub trait Effect: Sync {
         false
     }
 
+    /// Whether its memory outlasts a recording, so that what went before decides where it begins.
+    fn outlasts(&self) -> bool {
+        false
+    }
+
     /// Whether its pull needs the slopes of [`Base`], which cost four more evaluations of eq. 11.
     fn uses_slopes(&self) -> bool {
         false

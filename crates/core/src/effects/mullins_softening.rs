@@ -34,6 +34,10 @@ impl Effect for MullinsSoftening {
         &[Amplitude { name: "softening", unit: "1", range: (0.0, 1.5) }]
     }
 
+    fn outlasts(&self) -> bool {
+        true
+    }
+
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         Box::new(State { softening_contraction: shape[0], largest: f64::NEG_INFINITY })
     }

@@ -41,6 +41,10 @@ impl Effect for ThermalSoftening {
         &[Amplitude { name: "softening_per_kilowatt", unit: "1", range: (-MOST, MOST) }]
     }
 
+    fn outlasts(&self) -> bool {
+        true
+    }
+
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         Box::new(State { time_constant_s: shape[0], warmth: 0.0, power: 0.0, last_s: None })
     }

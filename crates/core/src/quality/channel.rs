@@ -17,6 +17,8 @@ pub struct ChannelQuality {
     pub highest: f64,
     /// Standard deviation of the white part of the noise, quantization included.
     pub noise: f64,
+    /// Standard deviation of the noise within [`WITHIN_S`], its colored part and hum included, quantization included.
+    pub colored_noise: f64,
     /// Smallest step between values, where the channel has one.
     pub quantization_step: Option<f64>,
     /// Share of samples stuck at the lowest value, where the noise says that they should flicker.
@@ -29,12 +31,12 @@ impl ChannelQuality {
     /// Whether the channel moves by more than its noise explains.
     pub fn varies(&self) -> bool {
         // White noise covers some ten standard deviations in a million samples.
-        self.highest - self.lowest > 12.0 * self.noise
+        self.highest - self.lowest > 12.0 * self.noise.max(self.colored_noise)
     }
 
-    /// Five times the noise: by how much a channel must turn back before it counts as turned.
+    /// Five times the noise, colored or not: by how much a channel must turn back before it counts as turned.
     pub fn play_threshold(&self) -> f64 {
-        5.0 * self.noise
+        5.0 * self.noise.max(self.colored_noise)
     }
 }
 
@@ -73,6 +75,59 @@ pub fn noise_std(values: &[f64]) -> f64 {
         mean = kept;
     }
     (mean / 6.0).sqrt()
+}
+
+/// Time within which noise is told from a signal, in s: muscles and valves are slower.
+pub const WITHIN_S: f64 = 0.3;
+/// Values that a window holds at least.
+const LEAST_IN_WINDOW: usize = 12;
+/// Parameters of the cubic that stands for the signal within a window.
+const CUBIC: usize = 4;
+/// Share of the windows that are quiet in any recording.
+const QUIET: f64 = 0.2;
+/// Where a standard normal variable has that share below it.
+const QUIET_NORMAL: f64 = -0.8416;
+
+/// Standard deviation of what a cubic leaves within [`WITHIN_S`], in the quietest fifth of the windows, corrected for that
+/// choice as if the noise were white (Wilson and Hilferty's approximation of χ²). None where a window of that length holds
+/// too few values at a `period_s`.
+pub fn colored_noise_std(values: &[f64], period_s: f64) -> Option<f64> {
+    let n = (WITHIN_S / period_s).round() as usize;
+    if n < LEAST_IN_WINDOW || values.len() < n {
+        return None;
+    }
+    // Orthonormal polynomials over a window.
+    let mut basis: Vec<Vec<f64>> = Vec::with_capacity(CUBIC);
+    for degree in 0..CUBIC as i32 {
+        let mut column: Vec<f64> = (0..n).map(|at| (2.0 * at as f64 / (n - 1) as f64 - 1.0).powi(degree)).collect();
+        for other in &basis {
+            let product: f64 = column.iter().zip(other).map(|(left, right)| left * right).sum();
+            column.iter_mut().zip(other).for_each(|(value, other)| *value -= product * other);
+        }
+        let size = column.iter().map(|value| value * value).sum::<f64>().sqrt();
+        column.iter_mut().for_each(|value| *value /= size);
+        basis.push(column);
+    }
+    let freedom = (n - CUBIC) as f64;
+    let mut variances: Vec<f64> = values
+        .chunks_exact(n)
+        .map(|window| {
+            let mean = window.iter().sum::<f64>() / n as f64;
+            let squares: f64 = window.iter().map(|value| (value - mean).powi(2)).sum();
+            let fitted: f64 = basis
+                .iter()
+                .skip(1)
+                .map(|column| {
+                    column.iter().zip(window).map(|(entry, value)| entry * (value - mean)).sum::<f64>().powi(2)
+                })
+                .sum();
+            (squares - fitted).max(0.0) / freedom
+        })
+        .collect();
+    let place = (QUIET * (variances.len() - 1) as f64).round() as usize;
+    let quiet = *variances.select_nth_unstable_by(place, f64::total_cmp).1;
+    let spread = 2.0 / (9.0 * freedom);
+    Some((quiet / (1.0 - spread + QUIET_NORMAL * spread.sqrt()).powi(3)).sqrt())
 }
 
 /// The step of a quantized channel: the smallest distance between two of its values, if all distances are

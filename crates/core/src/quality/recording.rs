@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::channel::{ChannelQuality, SAMPLE_ROWS, StuckCounter, noise_std, quantization_step};
+use super::channel::{ChannelQuality, SAMPLE_ROWS, StuckCounter, colored_noise_std, noise_std, quantization_step};
 use crate::recording::{Chunk, Recording, Repairs};
 
 /// What a recording looks like before anything is fitted to it; SI throughout.
@@ -127,15 +127,18 @@ fn channel(
     // A chunk at rest shows no step.
     let moves = |chunk: &&Chunk| column(chunk).iter().any(|&value| value != column(chunk)[0]);
     let step = sample.chunks.iter().find(moves).and_then(|chunk| quantization_step(column(chunk)));
-    let (mut squares, mut rows) = (0.0, 0.0);
+    let (mut squares, mut colored_squares, mut rows) = (0.0, 0.0, 0.0);
     for chunk in &sample.chunks {
         let noise = noise_std(column(chunk));
+        let colored = colored_noise_std(column(chunk), sample.period_s).unwrap_or(noise);
         squares += noise * noise * chunk.n_rows() as f64;
+        colored_squares += colored * colored * chunk.n_rows() as f64;
         rows += chunk.n_rows() as f64;
     }
-    let flicker = (squares / f64::max(rows, 1.0)).sqrt();
+    let [flicker, colored] = [squares, colored_squares].map(|squares| (squares / f64::max(rows, 1.0)).sqrt());
     // A channel at rest between two steps shows no noise at all, and yet is known to a step only.
-    let noise = step.map_or(flicker, |step| flicker.max(step / 12.0_f64.sqrt()));
+    let [noise, colored_noise] =
+        [flicker, colored].map(|noise| step.map_or(noise, |step| noise.max(step / 12.0_f64.sqrt())));
     let mut shares = (0.0, 0.0);
     // Only a channel that flickers between its steps can be told to be stuck.
     if highest > lowest && step.is_none_or(|step| flicker > 0.5 * step) {
@@ -152,6 +155,7 @@ fn channel(
         lowest,
         highest,
         noise,
+        colored_noise,
         quantization_step: step,
         clipped_low_share: shares.0,
         clipped_high_share: shares.1,
