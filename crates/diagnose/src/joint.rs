@@ -71,7 +71,7 @@ impl HeldOut {
 }
 
 /// Share of what a block typically leaves below which it is known no better.
-const OF_TYPICAL: f64 = 0.5;
+const OF_TYPICAL: f64 = 0.0;
 
 /// What is fitted.
 #[derive(Debug, Clone, Copy)]

@@ -207,8 +207,10 @@ impl Beside {
             nuisance.with_beginnings(setting.beginnings(&best.state, guess), &track.counted)
         });
         let bare = setting.beside(&plain);
-        let smooth = fitting(&bare, best, &plain.with_map(track, coordinates))?;
-        let free = fitting(&bare, best, &plain.with_free_map(track, coordinates))?;
+        let (smooth_square, smooth) = fitting(&bare, best, &plain.with_map(track, coordinates))?;
+        let (free_square, free) = fitting(&bare, best, &plain.with_free_map(track, coordinates))?;
+        // Where bends foretell nothing, there are none.
+        let free = if free_square < smooth_square { free } else { smooth.clone() };
         Some(Self { plain, smooth, free })
     }
 
@@ -228,15 +230,15 @@ impl Beside {
 const STRENGTHS: [f64; 5] = [1.0, 10.0, 100.0, 1000.0, 1e7];
 
 /// `map` with the prior under which it foretells held-out blocks best, beside `best`: what a few recordings say of a static
-/// force somewhere is no license to bend it elsewhere.
-fn fitting(plain: &Setting<'_>, best: &Judged, map: &Nuisance) -> Option<Nuisance> {
+/// force somewhere is no license to bend it elsewhere. With what it leaves, as a mean square.
+fn fitting(plain: &Setting<'_>, best: &Judged, map: &Nuisance) -> Option<(f64, Nuisance)> {
     let judge = |factor: f64| {
         let tightened = map.tightened(factor);
         Some((again(&plain.beside(&tightened), best)?.held_out.mean_square(), tightened))
     };
     let tried: Vec<(f64, Nuisance)> = STRENGTHS.into_par_iter().filter_map(judge).collect();
     let found = tried.into_iter().min_by(|left, right| left.0.total_cmp(&right.0))?;
-    Some(found.1)
+    Some(found)
 }
 
 /// Share of the mean square over held-out blocks that the static map must take up to be kept.

@@ -47,7 +47,9 @@ fn is_degenerate(guess: &Guess) -> bool {
         let near = 1e-3 * (high - low);
         (low != 0.0 && value <= low + near.min(0.05 * low.abs())) || value >= high - near
     };
-    guess.effect.kind() != Kind::Event && shapes.any(|(parameter, &value)| at_an_end(parameter.range, value))
+    guess.effect.kind() != Kind::Event
+        && !guess.effect.may_end()
+        && shapes.any(|(parameter, &value)| at_an_end(parameter.range, value))
 }
 
 /// Share of its evidence that an effect loses for every parameter beyond the first: of two that explain as much, the simpler

@@ -19,6 +19,7 @@ use crate::uncertainty::correlated_instants;
 
 /// Share of its size that an effect must be seen with on what was held out: half way between there and not there.
 const SEEN: f64 = 0.5;
+
 /// Pieces of the held-out recordings that stand for independent ones.
 const PIECES: usize = 16;
 /// Standard errors by which it must fall short of that: one in forty by chance.

@@ -37,6 +37,11 @@ impl Effect for ForceDrift {
         ]
     }
 
+    /// It drifts evenly, whatever warms up.
+    fn may_end(&self) -> bool {
+        true
+    }
+
     fn outlasts(&self) -> bool {
         true
     }

@@ -188,6 +188,11 @@ pub trait Effect: Sync {
         false
     }
 
+    /// Whether it is itself still where a shape lies at the end of its range.
+    fn may_end(&self) -> bool {
+        false
+    }
+
     /// Whether its memory outlasts a recording, so that what went before decides where it begins.
     fn outlasts(&self) -> bool {
         false
