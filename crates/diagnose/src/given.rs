@@ -27,8 +27,9 @@ use crate::search::Found;
 use crate::state::Setting;
 use crate::track::Track;
 
-/// Share of the variance of the force that a model of this muscle explains at least, gains and zeros of instruments included.
-const OF_THIS_MUSCLE: f64 = 0.75;
+/// Share of the variance of the force that a model of this muscle explains at least, gains and zeros of instruments included. Of
+/// 56 pairs of muscles drawn at random 54 are refused; at 0.75 it is 50, and the others are said to be missed.
+const OF_THIS_MUSCLE: f64 = 0.9;
 /// Share of the residual that a refit leaves where it is the parameters that are another muscle's.
 const REFIT_LEAVES: f64 = 0.5;
 /// Parameters that the statement names.

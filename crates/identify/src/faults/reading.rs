@@ -21,7 +21,7 @@ use super::scale::unit_words;
 use crate::evaluate::Trace;
 
 /// Times what the model missed of its own recordings, or what sensors or a refit leave, beyond which it misses one: half as much
-/// again. A gain of 2 % is missed by ten times that.
+/// again. To its own recordings a model is within a percent of its refit; a gain of 2 % makes ten times as much.
 pub const MISSES: f64 = 1.5;
 
 /// Times the worst of its own recordings: a fit to the same samples by another law of standstill moves that by some percent.
