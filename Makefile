@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
 PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench
 
-.PHONY: all install test check bench compare tables tutorial hard-use odd-inputs fuzz datasets recordings prove prove-worlds prove-real clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial hard-use odd-inputs mutate fuzz datasets recordings prove prove-worlds prove-real clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -81,6 +81,11 @@ hard-use: cargo-is-there
 odd-inputs: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/odd-inputs --bin $(BIN)
+
+# What instruments do to every channel of every shipped recording: named, refused, or not explained.
+mutate: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/mutate --bin $(BIN)
 
 # Broken input for every reader: SECONDS for each, one after another.
 SECONDS ?= 60

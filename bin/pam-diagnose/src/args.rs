@@ -10,7 +10,7 @@ use pam_diagnosis::diagnose::MAX_EFFECTS;
 
 /// Diagnose where a force model and recordings differ, and which physics was left out.
 ///
-/// Refits the base model to the recordings, looks where and how the residual exceeds the noise, weighs every effect of
+/// Compares the model as it is with the recordings, refits the base model to them, looks where and how the residual exceeds the noise, weighs every effect of
 /// the catalogue on blocks of recording that it was not fitted to, and names what explains the mismatch; or says that
 /// nothing is missing, or that something is that has no name. The diagnosed model works wherever the model did.
 #[derive(Debug, Parser)]
@@ -24,7 +24,8 @@ use pam_diagnosis::diagnose::MAX_EFFECTS;
                   Example: what an effect is and what it looks like\n  \
                   pam-diagnose --explain stribeck --figure stribeck.svg\n\n\
                   Exit codes: 0 done and understood (consistent, explained, ambiguous); 1 done, and part of the mismatch \
-                  has no name (unexplained); 2 input or usage."
+                  has no name (unexplained, explained in part), or the model as given misses the recordings, or the \
+                  diagnosed one what was held out; 2 input or usage, another muscle included."
 )]
 pub(crate) struct Args {
     /// Recordings to diagnose; - is standard input.

@@ -1,6 +1,6 @@
 //! The report of a diagnosis, from the artifact and the samples behind it.
 
-use pam_core::artifact::diagnosis::{BeforeAfter, Coordinate, Evidence, Region, Verdict};
+use pam_core::artifact::diagnosis::{AsGiven, BeforeAfter, Coordinate, Evidence, Region, Verdict};
 use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
 use pam_core::artifact::{DiagnosisArtifact, InputRole, ModelArtifact};
 use pam_core::effects::page::Confusion;
@@ -8,8 +8,8 @@ use pam_core::effects::{self, Page, Symbol};
 use pam_diagnosis::traces::Trace;
 use pam_report::{
     DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEvidence,
-    PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording, PageRegion,
-    PageSymbol, PageUnknown, PageVerdict,
+    PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording,
+    PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
 };
 
 /// Everything that the report shows.
@@ -26,6 +26,7 @@ pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: 
         },
         statement: artifact.statement.clone(),
         warnings: artifact.warnings.clone(),
+        as_given: artifact.as_given.as_ref().map(given),
         estimation: fit(&artifact.fit.estimation),
         holdout: artifact.fit.holdout.as_ref().map(fit),
         recordings: traces.into_iter().map(|trace| recording(trace, artifact, with_effects)).collect(),
@@ -95,6 +96,28 @@ fn name(id: &str) -> String {
 
 fn fit(fit: &BeforeAfter) -> PageFit {
     PageFit { rmse_before_n: fit.rmse_before_n, rmse_after_n: fit.rmse_after_n, noise_floor_n: fit.noise_floor_n }
+}
+
+fn given(given: &AsGiven) -> PageGiven {
+    PageGiven {
+        rmse_n: given.estimation.rmse_n,
+        holdout_rmse_n: given.holdout.map(|residual| residual.rmse_n),
+        refitted_rmse_n: given.refitted.rmse_n,
+        misses: given.misses,
+        instrument: given.instrument.clone(),
+        holdout_missed: given.holdout_missed.clone(),
+        shifts: given
+            .shifts
+            .iter()
+            .map(|shift| PageShift {
+                parameter: shift.parameter.clone(),
+                given: shift.given,
+                refitted: shift.refitted,
+                unit: shift.unit.clone(),
+                standard_errors: shift.standard_errors,
+            })
+            .collect(),
+    }
 }
 
 fn coordinate(coordinate: Coordinate) -> PageCoordinate {

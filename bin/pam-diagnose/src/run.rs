@@ -73,7 +73,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     let mut found = diagnose_observed(request, &|done, all| progress.set_of(done, all))?;
     drop(progress);
     let agreement = Agreement::of(&found)?;
-    found.weigh(&agreement);
+    found.weigh(&agreement)?;
     let tool = Tool { name: "pam-diagnose".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
     let head = Head { tool, inputs: hashes, seed: args.run.seed };
     let artifact = found.artifact(head.clone(), &agreement);

@@ -1,7 +1,7 @@
 //! What a person reads on the terminal.
 
 use pam_core::artifact::DiagnosisArtifact;
-use pam_core::artifact::diagnosis::{BeforeAfter, Verdict};
+use pam_core::artifact::diagnosis::{BeforeAfter, Residual, Verdict};
 use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
 use pam_diagnosis::words;
 use pam_report::Table;
@@ -74,15 +74,17 @@ fn value(entry: &ParameterEntry) -> String {
 
 /// Residuals before and after.
 fn fit(artifact: &DiagnosisArtifact) -> String {
-    let mut table = Table::new(["residual, rms", "base N", "with effects N", "noise floor N"]);
-    let mut row = |name: &str, fit: &BeforeAfter| {
+    let mut table = Table::new(["residual, rms", "as given N", "base N", "with effects N", "noise floor N"]);
+    let mut row = |name: &str, given: Option<Residual>, fit: &BeforeAfter| {
+        let given = given.map_or("-".to_owned(), |given| significant(given.rmse_n, 3));
         let after = if artifact.effects.is_empty() { "-".to_owned() } else { significant(fit.rmse_after_n, 3) };
         let (before, floor) = (significant(fit.rmse_before_n, 3), significant(fit.noise_floor_n, 3));
-        table.row([name.to_owned(), before, after, floor]);
+        table.row([name.to_owned(), given, before, after, floor]);
     };
-    row("estimation", &artifact.fit.estimation);
+    let given = artifact.as_given.as_ref();
+    row("estimation", given.map(|given| given.estimation), &artifact.fit.estimation);
     if let Some(holdout) = &artifact.fit.holdout {
-        row("held out", holdout);
+        row("held out", given.and_then(|given| given.holdout), holdout);
     }
     table.to_terminal()
 }

@@ -351,6 +351,107 @@ fn every_effect_is_explained_and_drawn() {
     }
 }
 
+/// Files with every row of the recordings that are fitted changed, as words of a command line.
+fn all_reworked(desk: &Desk, tag: &str, change: impl Fn([f64; 4]) -> [f64; 4] + Copy) -> String {
+    let names = FITTED.map(|name| {
+        let changed = format!("{tag}-{name}.csv");
+        desk.file(&changed, reworked(desk, &format!("{name}.csv"), change));
+        changed
+    });
+    names.join(" ")
+}
+
+#[test]
+fn a_model_that_was_fitted_to_the_recordings_follows_them_as_given() {
+    for desk in [Desk::plain(), Desk::presliding()] {
+        let files = "--out followed.json --out-model augmented.json --quiet";
+        let output = desk.run(&format!("{LOGS} --model model.json {HELD} {files}"));
+        assert!(matches!(output.status.code(), Some(0 | 1)));
+        let (diagnosis, _) = DiagnosisArtifact::read(&desk.path("followed.json")).unwrap();
+        let given = diagnosis.as_given.unwrap();
+        assert!(!given.misses && given.instrument.is_none() && given.holdout_missed.is_empty(), "{given:?}");
+        // The same fit over the same samples.
+        assert!((given.estimation.rmse_n / given.refitted.rmse_n - 1.0).abs() < 0.01, "{given:?}");
+        assert!(given.shifts.iter().all(|shift| shift.standard_errors.is_none_or(|errors| errors.abs() < 1.0)));
+    }
+}
+
+#[test]
+fn a_gain_that_changed_after_the_identification_is_said_first_and_named() {
+    let desk = &Desk::with(&[]);
+    let logs = all_reworked(desk, "gain", |[t, p, l, f]| [t, p, l, 1.15 * f]);
+    let files = "--out diagnosis.json --out-model augmented.json";
+    let (diagnosis, _) = desk.diagnosed(&format!("{logs} --model model.json --report gain.html {files}"), 1);
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{}", diagnosis.statement);
+    assert!(diagnosis.statement.starts_with("The model as given misses the recordings by "), "{}", diagnosis.statement);
+    assert!(diagnosis.statement.contains("refitted by ") && diagnosis.statement.contains("k1 shifted by "));
+    assert!(diagnosis.statement.contains("the force reads 1.150 times what it should"), "{}", diagnosis.statement);
+    let given = diagnosis.as_given.unwrap();
+    assert!(given.misses && given.estimation.rmse_n > 20.0 * given.refitted.rmse_n, "{given:?}");
+    // Eq. 11 is linear in k1: it takes in the gain, and by far more than it is uncertain.
+    let k1 = given.shifts.iter().find(|shift| shift.parameter == "k1").unwrap();
+    assert!((k1.refitted / k1.given - 1.15).abs() < 5e-3 && k1.standard_errors.unwrap() > 40.0, "{k1:?}");
+    let page = std::fs::read_to_string(desk.path("gain.html")).unwrap();
+    assert!(page.contains("The model as given is not that of these recordings") && page.contains("standard errors"));
+}
+
+#[test]
+fn an_effect_that_came_after_the_identification_is_no_other_muscle() {
+    let desk = &Desk::with(&[Concealed::new("presliding-hysteresis", 1.0)]);
+    desk.file("before.json", std::fs::read(Desk::plain().path("model.json")).unwrap());
+    let files = "--out diagnosis.json --out-model augmented.json";
+    let (diagnosis, _) = desk.diagnosed(&format!("{LOGS} --model before.json {files}"), 0);
+    assert_eq!(diagnosis.effects[0].id, "presliding-hysteresis");
+    assert!(!diagnosis.as_given.unwrap().misses, "{}", diagnosis.statement);
+}
+
+#[test]
+fn recordings_of_another_muscle_are_refused_unless_they_are_accepted() {
+    let desk = &Desk::with(&[]);
+    let mut other: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.path("model.json")).unwrap()).unwrap();
+    other["geometry"]["rest_radius_m"] = 0.0135.into();
+    desk.file("other.json", other.to_string());
+    let said = desk.refusal(&format!("{LOGS} --model other.json --out refused.json"));
+    assert!(said.contains("minor-loops.csv: the model as given misses the recordings by"), "{said}");
+    assert!(said.contains("another muscle; identify a model from them with pam-identify"), "{said}");
+    assert!(said.contains("--accept-implausible"), "{said}");
+    let said = desk.refusal(&format!("{LOGS} --model other.json --check"));
+    assert!(said.contains("another muscle"), "{said}");
+    let files = "--out diagnosis.json --out-model augmented.json --accept-implausible";
+    let (diagnosis, _) = desk.diagnosed(&format!("{LOGS} --model other.json {files}"), 1);
+    assert!(diagnosis.statement.starts_with("The model as given misses the recordings"), "{}", diagnosis.statement);
+    assert!(!matches!(diagnosis.verdict, Verdict::Consistent | Verdict::Explained));
+}
+
+#[test]
+fn a_fault_in_what_was_held_out_decides() {
+    let desk = &Desk::with(&[]);
+    let held = "multisine.csv";
+    desk.file("turned.csv", reworked(desk, held, |[t, p, l, f]| [t, p, l, -f]));
+    desk.file("longer.csv", reworked(desk, held, |[t, p, l, f]| [t, p, l + 60.0, f]));
+    desk.file("pascal.csv", reworked(desk, held, |[t, p, l, f]| [t, 1e3 * p, l, f]));
+    desk.file("gain.csv", reworked(desk, held, |[t, p, l, f]| [t, p, l, 1.2 * f]));
+    desk.file("datum.csv", reworked(desk, held, |[t, p, l, f]| [t, p, l + 4.0, f]));
+    for (name, says) in [
+        ("turned", "turned.csv: force falls as pressure rises"),
+        ("longer", "longer.csv: length runs from"),
+        ("pascal", "pascal.csv: pressure reaches"),
+    ] {
+        let said = desk.refusal(&format!("{LOGS} --model model.json --holdout {name}.csv --out refused.json"));
+        assert!(said.contains(says), "{said}");
+    }
+    for (name, says) in [("gain", "the force reads 1.200 times what it should"), ("datum", "the length reads 4.0")] {
+        let files = "--out diagnosis.json --out-model augmented.json";
+        let line = format!("{LOGS} --model model.json --holdout {name}.csv {files}");
+        let (diagnosis, _) = desk.diagnosed(&line, 1);
+        assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{}", diagnosis.statement);
+        let first = format!("Held out, {name}.csv is missed by ");
+        assert!(diagnosis.statement.starts_with(&first), "{}", diagnosis.statement);
+        assert!(diagnosis.statement.contains(says), "{}", diagnosis.statement);
+    }
+}
+
 /// Rows of a recording, each changed: time s, pressure kPa, length mm, force N.
 fn reworked(desk: &Desk, name: &str, change: impl Fn([f64; 4]) -> [f64; 4]) -> String {
     let mut text = "time_s,pressure_kPa,length_mm,force_N\n".to_owned();

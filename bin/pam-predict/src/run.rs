@@ -5,8 +5,8 @@ use pam_cli::{Console, Output, Verdict};
 use pam_core::artifact::ModelArtifact;
 use pam_core::effects::{AugmentedModel, Kind};
 use pam_core::recording::ReadOptions;
-use pam_identification::evaluate::{NoForceAt, evaluate_augmented, without_force};
-use pam_identification::faults::spikes;
+use pam_identification::evaluate::{NoForceAt, evaluate_augmented, noise_floor_n, trace_augmented, without_force};
+use pam_identification::faults::{reading, spikes};
 use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare, prepare_plausible};
 use pam_identification::prepare::Prepared;
 
@@ -75,11 +75,38 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         "RMSE {:.3} N, largest {:.1} N, fit {:.2} % over {} samples ({} at reversals or beyond a sensor's range left out)",
         statistics.rmse_n, statistics.max_n, statistics.fit_percent, statistics.n_samples, statistics.n_unsettled
     ));
+    if let Some(words) = missed(&prepared, &artifact, &model, statistics.rmse_n)? {
+        console.warn(words);
+    }
     if let Some(limit) = args.max_rmse_n.filter(|&limit| statistics.rmse_n > limit) {
         console.warn(format!("rejected: RMSE {:.3} N is above --max-rmse-n {limit}", statistics.rmse_n));
         return Ok(Verdict::Rejected);
     }
     Ok(Verdict::Accepted)
+}
+
+/// What to say of a recording that the model misses by `rmse_n`; nothing where it follows it as it followed its own.
+fn missed(
+    prepared: &Prepared,
+    artifact: &ModelArtifact,
+    model: &AugmentedModel,
+    rmse_n: f64,
+) -> anyhow::Result<Option<String>> {
+    let floor_n = noise_floor_n(std::slice::from_ref(prepared), model.base())?;
+    // A worse sensor is no other muscle.
+    if !reading::is_missed(artifact, rmse_n, floor_n) {
+        return Ok(None);
+    }
+    let own_n = reading::own_n(artifact).max(floor_n);
+    let trace = trace_augmented(prepared, model, artifact.direction, 0)?;
+    let reason = match reading::said(&reading::explain(&[trace], model.base(), own_n)) {
+        Some(instrument) => format!("{instrument}, or it is of another muscle"),
+        None => "it is of another muscle, or of more physics than the model has: pam-diagnose tells".to_owned(),
+    };
+    Ok(Some(format!(
+        "{}: the model misses this recording by {rmse_n:.2} N, and those that it was identified on by {:.2} N: {reason}",
+        prepared.recording.path, artifact.fit.estimation.rmse_n
+    )))
 }
 
 /// The model with all its effects but events, which belong to the recordings that it was diagnosed on.

@@ -315,6 +315,29 @@ fn a_length_beyond_the_strands_is_located_among_samples_that_count() {
 }
 
 #[test]
+fn an_instrument_that_explains_what_the_model_misses_is_named() {
+    let bench = Bench::new();
+    let forces = {
+        let output = bench.run("log.csv --model model.json --out - --quiet");
+        column(&String::from_utf8(output.stdout).unwrap(), "force_model_N")
+    };
+    // The model's own force, as other instruments read it.
+    bench.file("own.csv", &reworked(HEADER, |row, [t, p, l, _]| [t, p, l, forces[row]]));
+    bench.file("gain.csv", &reworked(HEADER, |row, [t, p, l, _]| [t, p, l, 1.3 * forces[row]]));
+    bench.file("zero.csv", &reworked(HEADER, |row, [t, p, l, _]| [t, p + 30.0, l, forces[row]]));
+    let said = |log: &str| {
+        let output = bench.run(&format!("{log} --model model.json --out out.csv"));
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(!said("own.csv").contains("misses this recording"));
+    let gain = said("gain.csv");
+    assert!(gain.contains("gain.csv: the model misses this recording by"), "{gain}");
+    assert!(gain.contains("the force reads 1.300 times what it should"), "{gain}");
+    assert!(said("zero.csv").contains("the pressure reads 30.0"), "{}", said("zero.csv"));
+}
+
+#[test]
 fn a_limit_is_a_number_above_zero() {
     let bench = Bench::new();
     for limit in ["nan", "-1", "0", "inf", "two"] {

@@ -14,6 +14,7 @@ use pam_identification::search_space::Free;
 
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;
+use crate::{held, words};
 
 /// How an artifact begins.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,8 +102,12 @@ fn effective_samples(diagnosis: &Diagnosis) -> Result<f64, DiagnoseError> {
 
 impl Diagnosis {
     /// Lowers what is called explained to explained in part where, over all samples, more is left than half as much again as
-    /// the sensors leave, and says so.
-    pub fn weigh(&mut self, agreement: &Agreement) {
+    /// the sensors leave, and says so. The model as given and what was held out decide, too: where either is missed, nothing is
+    /// consistent or explained, and that is said first.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Recording`] where samples cannot be read back.
+    pub fn weigh(&mut self, agreement: &Agreement) -> Result<(), DiagnoseError> {
         let left_n = together(&agreement.estimation).rmse_all_n;
         let sensors_n = self.sizes.sensors_n;
         if self.verdict == Verdict::Explained && left_n > EXPLAINED_WITHIN * sensors_n {
@@ -111,6 +116,15 @@ impl Diagnosis {
                 " Over all samples {left_n:.2} N are left, where the sensors alone leave {sensors_n:.2} N."
             ));
         }
+        self.given.holdout_missed = held::missed(self, agreement)?;
+        if self.given.misses || !self.given.holdout_missed.is_empty() {
+            self.verdict = match self.verdict {
+                Verdict::Consistent | Verdict::Unexplained => Verdict::Unexplained,
+                Verdict::Explained | Verdict::ExplainedInPart | Verdict::Ambiguous => Verdict::ExplainedInPart,
+            };
+        }
+        self.statement = words::with_given(&self.given, &self.statement);
+        Ok(())
     }
 
     /// The diagnosis for other programs and for people.
@@ -135,6 +149,7 @@ impl Diagnosis {
             seed: head.seed,
             verdict: self.verdict,
             statement: self.statement.clone(),
+            as_given: Some(self.given.artifact()),
             regions: self.regions.clone(),
             effects: self.effects.clone(),
             fit: DiagnosisFit {
@@ -359,7 +374,7 @@ impl Diagnosis {
 const EXPLAINED_WITHIN: f64 = 1.5;
 
 /// All recordings together; a diagnosis has at least one.
-fn together(evaluation: &Evaluation) -> FitStatistics {
+pub(crate) fn together(evaluation: &Evaluation) -> FitStatistics {
     evaluation.together.unwrap_or_else(|| evaluation.each[0])
 }
 

@@ -33,7 +33,7 @@ pub(crate) fn prepare(
         channels(gated)?;
     }
     if !accept_implausible {
-        let fault = faults::find(&gates[..n_estimation], &model.geometry).map_err(|reason| IdentifyError::Samples {
+        let fault = faults::find(&gates, &model.geometry).map_err(|reason| IdentifyError::Samples {
             path: gates.first().map_or_else(String::new, |gated| gated.recording.path.clone()),
             reason,
         })?;

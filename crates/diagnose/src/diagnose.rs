@@ -14,6 +14,7 @@ use pam_identification::prepare::{Prepared, redirect};
 
 use crate::check;
 use crate::error::DiagnoseError;
+use crate::given::Given;
 use crate::isolability::isolability;
 use crate::joint::HeldOut;
 use crate::knocks::{self, Knocks};
@@ -55,8 +56,10 @@ pub struct Diagnosis {
     pub config: DiagnoseConfig,
     /// What is to be believed.
     pub verdict: Verdict,
-    /// The verdict in one sentence.
+    /// The verdict in words.
     pub statement: String,
+    /// The model as it was given.
+    pub given: Given,
     /// Where model and recordings differ.
     pub regions: Vec<Region>,
     /// Effects in order of evidence.
@@ -104,10 +107,30 @@ pub const MAX_EFFECTS: usize = 4;
 /// # Errors
 /// [`DiagnoseError`] names the recording and the remedy.
 pub fn check(request: Request) -> Result<(), DiagnoseError> {
-    let (estimation, _) =
-        check::prepare(request.estimation, request.holdout, &request.model, request.accept_implausible)?;
-    let track = Track::of(&estimation, request.model.direction, &request.model.force_model())?;
-    check::long_enough(&track, &estimation)
+    let Request { estimation, holdout, model, config, accept_implausible } = request;
+    let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
+    let track = Track::of(&estimation, model.direction, &model.force_model())?;
+    check::long_enough(&track, &estimation)?;
+    given(&Question::new(&estimation, &model, limits(&config, &model, false)), &holdout, accept_implausible).map(|_| ())
+}
+
+/// The model as given; recordings of clearly another muscle are refused unless they are to be accepted.
+fn given(question: &Question<'_>, holdout: &[Prepared], accept_implausible: bool) -> Result<Given, DiagnoseError> {
+    let given = Given::of(question, holdout)?;
+    if !accept_implausible {
+        given.refuse_another_muscle(question.estimation)?;
+    }
+    Ok(given)
+}
+
+fn limits(config: &DiagnoseConfig, model: &ModelArtifact, confirmed: bool) -> Limits {
+    Limits {
+        max_effects: config.max_effects,
+        excluded: config.excluded.clone(),
+        matters_above_n: config.matters_above_n,
+        sensor_floor_n: model.fit.noise_floor_n,
+        confirmed,
+    }
 }
 
 /// Diagnoses.
@@ -127,13 +150,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (mut estimation, mut holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
     let mut track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
-    let limits = Limits {
-        max_effects: config.max_effects,
-        excluded: config.excluded.clone(),
-        matters_above_n: config.matters_above_n,
-        sensor_floor_n: model.fit.noise_floor_n,
-        confirmed: !holdout.is_empty(),
-    };
+    let limits = limits(&config, &model, !holdout.is_empty());
+    let mut given = given(&Question::new(&estimation, &model, limits.clone()), &holdout, accept_implausible)?;
     // Reading the channels, each look, and what is said of the outcome; a search may end early.
     let (steps, done) = (config.max_effects as u64 + 3, std::cell::Cell::new(1));
     let advance = || {
@@ -167,6 +185,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         found = veto::confirmed(&question, &track, found, &held);
         sizes = Sizes::of(&found, &question.limits);
     }
+    given.beside_effects(&question, &track, &found);
     let setting = question.setting(&track, &found.nuisance);
     let space = &question.space;
     observer(steps - 1, steps);
@@ -212,6 +231,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let diagnosis = Diagnosis {
         verdict,
         statement: words::statement(verdict, &effects, &sizes, &regions, &unexplained),
+        given,
         regions,
         effects,
         unexplained_share: sizes.share_left(),

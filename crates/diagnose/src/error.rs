@@ -25,6 +25,23 @@ pub enum DiagnoseError {
     // A diagnosis knows the muscle from its model, a fit from the muscle file.
     #[error("{}", .0.to_string().replace("muscle file", "model"))]
     Fault(pam_identification::faults::Fault),
+    /// Parameters that are those of another muscle.
+    #[error(
+        "{path}: the model as given misses the recordings by {given_n:.1} N, refitted by {refitted_n:.1} N{shifted}: {reason}; \
+         identify a model from them with pam-identify, set the instrument right, or go on with --accept-implausible"
+    )]
+    AnotherMuscle {
+        /// First recording.
+        path: String,
+        /// RMSE of the model as given, in N.
+        given_n: f64,
+        /// RMSE of the refitted model, in N.
+        refitted_n: f64,
+        /// Parameters that moved, in words.
+        shifted: String,
+        /// What would explain it, in words.
+        reason: String,
+    },
     /// A channel that should vary does not.
     #[error("{path}: {channel} stays at {value} {unit} throughout; check its wiring, or leave the recording out")]
     Constant {

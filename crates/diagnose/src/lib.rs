@@ -12,6 +12,8 @@ pub mod diagnose;
 pub mod error;
 pub mod explain;
 mod forms;
+pub mod given;
+mod held;
 pub mod hypothesis;
 pub mod isolability;
 pub mod joint;

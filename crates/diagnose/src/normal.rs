@@ -8,9 +8,9 @@
 
 use std::ops::Range;
 
+use fearless_simd::{Level, dispatch};
 use nalgebra::DMatrix;
 use pam_optim::summary::{BLOCK_ROWS, Summary};
-use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::nuisance::{self, Nuisance};
@@ -268,7 +268,7 @@ impl Normal {
 fn products_of(rows: &[f64], width: usize) -> DMatrix<f64> {
     let mut sums = vec![0.0; width * width];
     // The widest vectors that the processor has; nothing is fused, so that every processor gives the same bits.
-    Arch::new().dispatch(|| sum_products(rows, width, &mut sums));
+    dispatch!(Level::new(), _ => sum_products(rows, width, &mut sums));
     let mut out = DMatrix::zeros(width, width);
     for i in 0..width {
         for j in i..width {

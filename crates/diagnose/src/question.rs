@@ -26,7 +26,8 @@ pub struct Question<'a> {
     pub limits: Limits,
     /// Base parameters that move, and their ranges.
     pub space: SearchSpace,
-    columns: ForceColumns,
+    /// Columns of eq. 11.
+    pub columns: ForceColumns,
 }
 
 /// What came out.

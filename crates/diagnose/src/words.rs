@@ -2,6 +2,8 @@
 
 use pam_core::artifact::diagnosis::{Coordinate, NamedEffect, Region, Verdict};
 
+use crate::artifact::together;
+use crate::given::Given;
 use crate::verdict::Sizes;
 
 /// The verdict in one sentence.
@@ -53,6 +55,36 @@ pub(crate) fn statement(
             }
         }
     }
+}
+
+/// `statement` after what is to be said first: that the model as given misses the recordings, or the diagnosed one what was held
+/// out. Where an instrument would explain what the given model misses as well as what was named does, both are said.
+pub(crate) fn with_given(given: &Given, statement: &str) -> String {
+    let mut words = String::new();
+    let before_n = together(&given.estimation).rmse_n;
+    if given.misses {
+        let shifted = given.shifted().map_or(String::new(), |shifted| format!(" ({shifted})"));
+        let reason = match &given.instrument {
+            Some(instrument) => format!("{instrument}, or these recordings are of another muscle"),
+            None => "these recordings are of another muscle, or an instrument reads otherwise".to_owned(),
+        };
+        let refitted_n = given.refitted.rmse_n;
+        words.push_str(&format!(
+            "The model as given misses the recordings by {before_n:.2} N, refitted by {refitted_n:.2} N{shifted}: {reason}. "
+        ));
+    } else if let Some(instrument) = &given.instrument {
+        words.push_str(&format!(
+            "The model as given misses the recordings by {before_n:.2} N, and an instrument alone would explain it: \
+             {instrument}. "
+        ));
+    }
+    for missed in &given.holdout_missed {
+        words.push_str(&format!("Held out, {missed}. "));
+    }
+    if words.is_empty() {
+        return statement.to_owned();
+    }
+    format!("{words}Beside that: {statement}")
 }
 
 fn list(names: &[&str]) -> String {

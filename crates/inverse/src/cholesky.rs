@@ -5,7 +5,7 @@
 //! processor once for [`PANEL`] of them. Every difference is taken in the same order and nothing is fused: every processor
 //! gives the same bits, as with the products that the matrix is made of.
 
-use pulp::{Arch, Simd, WithSimd};
+use fearless_simd::{Level, Simd, SimdBase as _, dispatch};
 
 /// Rows that the others are cleared of at once.
 const PANEL: usize = 8;
@@ -34,7 +34,7 @@ impl Triangle {
     /// Turns the matrix into its factor `U`; false where it is not positive definite.
     pub(crate) fn factorize(&mut self) -> bool {
         let (n, width) = (self.n, self.width);
-        let arch = Arch::new();
+        let level = Level::new();
         for first in (0..n).step_by(PANEL) {
             let end = (first + PANEL).min(n);
             let (above, below) = self.rows.split_at_mut(end * width);
@@ -57,7 +57,7 @@ impl Triangle {
                 rest[from..].iter_mut().for_each(|value| *value /= root);
             }
             let below = &mut below[..(n - end) * width];
-            arch.dispatch(Clear { panel, below, width, first: end });
+            dispatch!(level, simd => clear(simd, panel, below, width, end));
         }
         true
     }
@@ -80,45 +80,32 @@ impl Triangle {
     }
 }
 
-/// Clears the rows `below`, the first of which is row `first` of the matrix, of those of `panel`.
-struct Clear<'a> {
-    panel: &'a [f64],
-    below: &'a mut [f64],
-    width: usize,
-    first: usize,
-}
-
-impl WithSimd for Clear<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { panel, below, width, first } = self;
-        for (index, row) in below.chunks_exact_mut(width).enumerate() {
-            let column = first + index;
-            // Whole vectors: what is left of the diagonal belongs to nobody.
-            let from = column / S::F64_LANES * S::F64_LANES;
-            let (values, _) = S::as_mut_simd_f64s(&mut row[from..]);
-            if panel.len() == PANEL * width {
-                let known: [&[f64]; PANEL] = std::array::from_fn(|line| &panel[line * width..(line + 1) * width]);
-                let factors = known.map(|known| simd.splat_f64s(known[column]));
-                let known = known.map(|known| S::as_simd_f64s(&known[from..]).0);
-                let known = known.map(|known| &known[..values.len()]);
-                for (at, value) in values.iter_mut().enumerate() {
-                    let mut left = *value;
-                    for line in 0..PANEL {
-                        left = simd.sub_f64s(left, simd.mul_f64s(factors[line], known[line][at]));
-                    }
-                    *value = left;
+/// Clears the rows `below`, each of length `width` and the first of which is row `first` of the matrix, of those of `panel`.
+#[inline(always)]
+fn clear<S: Simd>(simd: S, panel: &[f64], below: &mut [f64], width: usize, first: usize) {
+    let lanes = S::f64s::LEN;
+    for (index, row) in below.chunks_exact_mut(width).enumerate() {
+        let column = first + index;
+        // Whole vectors: what is left of the diagonal belongs to nobody.
+        let from = column / lanes * lanes;
+        let values = row[from..].chunks_exact_mut(lanes);
+        if panel.len() == PANEL * width {
+            let known: [&[f64]; PANEL] = std::array::from_fn(|line| &panel[line * width..(line + 1) * width]);
+            let factors = known.map(|known| known[column]);
+            for (at, values) in values.enumerate() {
+                let mut left = S::f64s::from_slice(simd, values);
+                for line in 0..PANEL {
+                    left -= S::f64s::from_slice(simd, &known[line][from + at * lanes..][..lanes]) * factors[line];
                 }
-            } else {
+                left.store_slice(values);
+            }
+        } else {
+            for (at, values) in values.enumerate() {
+                let mut left = S::f64s::from_slice(simd, values);
                 for known in panel.chunks_exact(width) {
-                    let factor = simd.splat_f64s(known[column]);
-                    let (known, _) = S::as_simd_f64s(&known[from..]);
-                    for (value, known) in values.iter_mut().zip(known) {
-                        *value = simd.sub_f64s(*value, simd.mul_f64s(factor, *known));
-                    }
+                    left -= S::f64s::from_slice(simd, &known[from + at * lanes..][..lanes]) * known[column];
                 }
+                left.store_slice(values);
             }
         }
     }

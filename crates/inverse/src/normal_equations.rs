@@ -7,9 +7,9 @@
 //! same bits; a library's matrix product would be chosen by the processor at hand, and with it the last digits of
 //! every weight.
 
-use std::ops::Range;
+use std::ops::{AddAssign, Mul, Range};
 
-use pulp::{Arch, Simd, WithSimd};
+use fearless_simd::{Level, Simd, SimdBase as _, dispatch};
 use rayon::prelude::*;
 
 use crate::network::{Network, Pass};
@@ -77,7 +77,7 @@ impl Sums {
         let mut derivatives = vec![[0.0; SIDE_BY_SIDE]; n];
         // What is beyond the parameters stays zero.
         let mut rows = vec![0.0; ROWS * width];
-        let arch = Arch::new();
+        let level = Level::new();
         let mut filled = 0;
         for first in range.clone().step_by(SIDE_BY_SIDE) {
             let residuals = residuals(network, samples, first, &mut pass);
@@ -92,7 +92,8 @@ impl Sums {
                 filled += 1;
             }
             if filled == ROWS || first + SIDE_BY_SIDE >= range.end {
-                arch.dispatch(Products { hessian: &mut self.hessian, rows: &rows[..filled * width], width });
+                let rows = &rows[..filled * width];
+                dispatch!(level, simd => add_products(simd, &mut self.hessian, rows, width));
                 filled = 0;
             }
         }
@@ -144,32 +145,22 @@ fn add(sum: &mut [f64], terms: &[f64]) {
 }
 
 /// Adds the products of `rows`, each of length `width`, with themselves to the upper triangle of `hessian`.
-struct Products<'a> {
-    hessian: &'a mut [f64],
-    rows: &'a [f64],
-    width: usize,
-}
-
-impl WithSimd for Products<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { hessian, rows, width } = self;
-        let across = TILE.1 * S::F64_LANES;
-        for top in (0..width).step_by(TILE.0) {
-            for left in (top / across * across..width).step_by(across) {
-                let mut tile = [[simd.splat_f64s(0.0); TILE.1]; TILE.0];
-                for row in rows.chunks_exact(width) {
-                    let (terms, _) = S::as_simd_f64s(&row[left..left + across]);
-                    let (Some(&terms), Some(&factors)) = (terms.first_chunk(), row[top..].first_chunk()) else { break };
-                    add_product(simd, &mut tile, factors, terms);
-                }
-                for (line, terms) in hessian[top * width..].chunks_mut(width).zip(tile) {
-                    let (sums, _) = S::as_mut_simd_f64s(&mut line[left..left + across]);
-                    for (sum, term) in sums.iter_mut().zip(terms) {
-                        *sum = simd.add_f64s(*sum, term);
-                    }
+#[inline(always)]
+fn add_products<S: Simd>(simd: S, hessian: &mut [f64], rows: &[f64], width: usize) {
+    let lanes = S::f64s::LEN;
+    let across = TILE.1 * lanes;
+    for top in (0..width).step_by(TILE.0) {
+        for left in (top / across * across..width).step_by(across) {
+            let mut tile = [[S::f64s::splat(simd, 0.0); TILE.1]; TILE.0];
+            for row in rows.chunks_exact(width) {
+                let terms: [S::f64s; TILE.1] =
+                    std::array::from_fn(|part| S::f64s::from_slice(simd, &row[left + part * lanes..][..lanes]));
+                let Some(&factors) = row[top..].first_chunk() else { break };
+                add_product(&mut tile, factors, terms);
+            }
+            for (line, terms) in hessian[top * width..].chunks_mut(width).zip(tile) {
+                for (sums, term) in line[left..left + across].chunks_exact_mut(lanes).zip(terms) {
+                    (S::f64s::from_slice(simd, sums) + term).store_slice(sums);
                 }
             }
         }
@@ -178,16 +169,14 @@ impl WithSimd for Products<'_> {
 
 /// Adds the products of `factors` and `terms` to a tile, nothing fused.
 #[inline(always)]
-fn add_product<S: Simd>(
-    simd: S,
-    tile: &mut [[S::f64s; TILE.1]; TILE.0],
+fn add_product<V: Copy + AddAssign + Mul<f64, Output = V>>(
+    tile: &mut [[V; TILE.1]; TILE.0],
     factors: [f64; TILE.0],
-    terms: [S::f64s; TILE.1],
+    terms: [V; TILE.1],
 ) {
     for (line, factor) in tile.iter_mut().zip(factors) {
-        let factor = simd.splat_f64s(factor);
         for (sum, term) in line.iter_mut().zip(terms) {
-            *sum = simd.add_f64s(*sum, simd.mul_f64s(factor, term));
+            *sum += term * factor;
         }
     }
 }

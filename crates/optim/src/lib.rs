@@ -4,6 +4,8 @@
 //! box for the lowest cost, [`polish`] walks from there to the optimum. Nothing here prints, reads a clock
 //! or draws random numbers that were not seeded by the caller.
 
+mod levenberg_marquardt;
 pub mod polish;
 pub mod summary;
 pub mod swarm;
+mod trust_region;

@@ -1,6 +1,6 @@
 //! Least squares in the unit box: Levenberg–Marquardt on the free parameters, an active set for the rest.
 //!
-//! The steps are those of the `levenberg-marquardt` crate (MINPACK's `lmder` in Rust), which knows no
+//! The steps are those of [`levenberg_marquardt`](crate::levenberg_marquardt), which knows no
 //! bounds. It is given walls that yield like stiff springs, one more residual per parameter; a parameter that
 //! comes to rest inside a wall is put on it and held, and the rest settle again. Once nobody presses
 //! against a wall, a held one whose gradient points inwards is released. A cost close to a parabola, as a
@@ -9,8 +9,9 @@
 //! Source: Moré (1978), "The Levenberg-Marquardt algorithm: implementation and theory"; Lawson and Hanson
 //! (1974), "Solving Least Squares Problems", chapter 23, for the active set.
 
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::{DMatrix, DVector, Dyn, Owned};
+use nalgebra::{DMatrix, DVector};
+
+use crate::levenberg_marquardt::{LeastSquares, minimize};
 
 /// A sum of squares over the unit box.
 pub trait Residuals {
@@ -128,12 +129,10 @@ fn most_eager(problem: &dyn Residuals, x: &[f64], held: &[bool]) -> Option<usize
 fn settle(problem: &dyn Residuals, x: &[f64], free: &[usize], n_evaluations: &mut usize) -> Vec<f64> {
     let jacobian = problem.jacobian(x);
     let stiffness = free.iter().map(|&index| WALL_STIFFNESS * jacobian.column(index).norm()).collect();
-    let section = Section { problem, x: x.to_vec(), free, stiffness };
-    // Steps until the cost moves by less than its own rounding.
-    let solver = LevenbergMarquardt::new().with_ftol(1e-14).with_xtol(1e-14).with_gtol(1e-14);
-    let (section, report) = solver.minimize(section);
-    *n_evaluations += report.number_of_evaluations;
-    section.x
+    let section = Section { problem, x, free, stiffness };
+    let (values, evaluations) = minimize(&section, free.iter().map(|&index| x[index]).collect());
+    *n_evaluations += evaluations;
+    section.all(&values)
 }
 
 /// Stiffness of a wall, related to the parameter's own column: only its sign matters in the end, as
@@ -143,48 +142,41 @@ const WALL_STIFFNESS: f64 = 10.0;
 /// The problem with some parameters held.
 struct Section<'a> {
     problem: &'a dyn Residuals,
-    x: Vec<f64>,
+    /// Values of all parameters, of which those that are held stay.
+    x: &'a [f64],
     free: &'a [usize],
     /// Of the wall of each free parameter.
     stiffness: Vec<f64>,
 }
 
-impl LeastSquaresProblem<f64, Dyn, Dyn> for Section<'_> {
-    type ResidualStorage = Owned<f64, Dyn>;
-    type JacobianStorage = Owned<f64, Dyn, Dyn>;
-    type ParameterStorage = Owned<f64, Dyn>;
+impl Section<'_> {
+    /// All parameters, where the free ones have `values`.
+    fn all(&self, values: &[f64]) -> Vec<f64> {
+        let mut x = self.x.to_vec();
+        self.free.iter().zip(values).for_each(|(&index, &value)| x[index] = value);
+        x
+    }
+}
 
-    fn set_params(&mut self, free_values: &DVector<f64>) {
-        for (&index, &value) in self.free.iter().zip(free_values.iter()) {
-            self.x[index] = value;
-        }
+impl LeastSquares for Section<'_> {
+    fn residuals(&self, values: &[f64]) -> DVector<f64> {
+        let inner = self.problem.residuals(&self.all(values));
+        let walls =
+            values.iter().zip(&self.stiffness).map(|(value, stiffness)| stiffness * (value - value.clamp(0.0, 1.0)));
+        let n = inner.len() + values.len();
+        DVector::from_iterator(n, inner.iter().copied().chain(walls))
     }
 
-    fn params(&self) -> DVector<f64> {
-        DVector::from_iterator(self.free.len(), self.free.iter().map(|&index| self.x[index]))
-    }
-
-    fn residuals(&self) -> Option<DVector<f64>> {
-        let inner = self.problem.residuals(&self.x);
-        let walls = self
-            .free
-            .iter()
-            .zip(&self.stiffness)
-            .map(|(&index, stiffness)| stiffness * (self.x[index] - self.x[index].clamp(0.0, 1.0)));
-        let n = inner.len() + self.free.len();
-        Some(DVector::from_iterator(n, inner.iter().copied().chain(walls)))
-    }
-
-    fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let inner = self.problem.jacobian(&self.x).select_columns(self.free);
+    fn jacobian(&self, values: &[f64]) -> DMatrix<f64> {
+        let inner = self.problem.jacobian(&self.all(values)).select_columns(self.free);
         let n = inner.nrows();
         let mut jacobian = inner.insert_rows(n, self.free.len(), 0.0);
-        for (column, &index) in self.free.iter().enumerate() {
-            if !(0.0..=1.0).contains(&self.x[index]) {
+        for (column, value) in values.iter().enumerate() {
+            if !(0.0..=1.0).contains(value) {
                 jacobian[(n + column, column)] = self.stiffness[column];
             }
         }
-        Some(jacobian)
+        jacobian
     }
 }
 

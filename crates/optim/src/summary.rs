@@ -14,7 +14,7 @@
 //! Source: Demmel, Grigori, Hoemmen and Langou (2012), "Communication-optimal parallel and sequential QR
 //! and LU factorizations", SIAM J. Scientific Computing 34(1).
 
-use pulp::Arch;
+use fearless_simd::{Level, dispatch};
 
 /// Sums that run side by side, in vector registers.
 const LANES: usize = 8;
@@ -103,7 +103,7 @@ impl Summary {
     fn annihilate(&mut self, block: &mut [f64], n_rows: usize) {
         // The widest vectors that the processor has. Sums have fixed lanes and nothing is fused, so that every
         // processor gives the same bits.
-        Arch::new().dispatch(|| reflect(&mut self.triangle, self.width, block, n_rows));
+        dispatch!(Level::new(), _ => reflect(&mut self.triangle, self.width, block, n_rows));
     }
 
     /// `‖y - X w‖²` for weights `w` (`n_columns` of them).

@@ -229,6 +229,7 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
         verdict: PageVerdict::Consistent,
         statement: "Model and recordings differ by no more than the noise of the load cell.".to_owned(),
         warnings: Vec::new(),
+        as_given: None,
         estimation,
         holdout: Some(holdout),
         recordings,

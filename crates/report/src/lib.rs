@@ -25,8 +25,8 @@ mod table;
 pub use confusion_figure::{ConfusionFigure, confusion_figure};
 pub use diagnosis_page::{
     DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEvidence,
-    PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording, PageRegion,
-    PageSymbol, PageUnknown, PageVerdict, diagnosis_page,
+    PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording,
+    PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict, diagnosis_page,
 };
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;

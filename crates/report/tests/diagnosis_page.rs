@@ -2,9 +2,9 @@
 
 use pam_report::{
     ConfusionFigure, DiagnosisPage, FigureError, PageAlternative, PageAppendix, PageCandidate, PageCoordinate,
-    PageEffect, PageEvidence, PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter,
-    PageRecording, PageRegion, PageSymbol, PageUnknown, PageVerdict, SignatureFigure, SignaturePanel, SignatureSeries,
-    confusion_figure, diagnosis_page, signature_figure,
+    PageEffect, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability,
+    PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict, SignatureFigure,
+    SignaturePanel, SignatureSeries, confusion_figure, diagnosis_page, signature_figure,
 };
 
 const SHARP: &str = "<b>&\"'</p>\u{0}";
@@ -62,6 +62,21 @@ fn full() -> DiagnosisPage {
         verdict: PageVerdict::Explained,
         statement: text(),
         warnings: vec![text()],
+        as_given: Some(PageGiven {
+            rmse_n: 76.0,
+            holdout_rmse_n: Some(80.0),
+            refitted_rmse_n: 2.0,
+            misses: true,
+            instrument: Some(text()),
+            holdout_missed: vec![text()],
+            shifts: vec![PageShift {
+                parameter: text(),
+                given: 0.9,
+                refitted: 1.03,
+                unit: text(),
+                standard_errors: Some(40.0),
+            }],
+        }),
         estimation: fit,
         holdout: Some(fit),
         recordings: vec![recording("a.csv", 4000, true), held_out],
@@ -126,6 +141,7 @@ fn bare(verdict: PageVerdict, recordings: Vec<PageRecording>) -> DiagnosisPage {
         verdict,
         statement: String::new(),
         warnings: Vec::new(),
+        as_given: None,
         estimation: PageFit { rmse_before_n: 0.7, rmse_after_n: 0.7, noise_floor_n: 0.7 },
         holdout: None,
         recordings,

@@ -28,8 +28,11 @@ pub struct DiagnosisArtifact {
     pub seed: u64,
     /// What is to be believed.
     pub verdict: Verdict,
-    /// The verdict in one sentence.
+    /// The verdict in words.
     pub statement: String,
+    /// The model as it was given, before it was refitted; none in what older versions wrote.
+    #[serde(default)]
+    pub as_given: Option<AsGiven>,
     /// Where model and recordings differ, the largest share first; empty where they agree.
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
@@ -61,11 +64,13 @@ pub enum Verdict {
     Consistent,
     /// The named effects explain the mismatch.
     Explained,
-    /// They explain part of it: over all samples more is left than half as much again as the sensors leave.
+    /// They explain part of it: over all samples more is left than half as much again as the sensors leave, or the model as given
+    /// or what was held out is missed besides.
     ExplainedInPart,
     /// They do, and so do others that these recordings cannot tell from them.
     Ambiguous,
-    /// Structure is left that no effect of the catalogue explains.
+    /// Structure is left that no effect of the catalogue explains; or only a refit follows the recordings and the model as given
+    /// misses them; or what was held out is missed.
     Unexplained,
 }
 
@@ -80,6 +85,55 @@ pub struct DiagnoseConfig {
     pub max_effects: usize,
     /// Catalogue ids that were not considered.
     pub excluded: Vec<String>,
+}
+
+/// The model as it was given against the recordings, and how far a refit to them moves it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AsGiven {
+    /// Residual on the estimation recordings.
+    pub estimation: Residual,
+    /// Residual on what was held out.
+    pub holdout: Option<Residual>,
+    /// Residual on the estimation recordings of the same model with its free parameters refitted to them.
+    pub refitted: Residual,
+    /// Free base parameters, the one that moved by most standard errors first.
+    pub shifts: Vec<Shift>,
+    /// Whether it misses the estimation recordings by clearly more than the refitted model does, where no effect explains that
+    /// beside the parameters as given: the recordings are of another muscle, or an instrument reads otherwise.
+    pub misses: bool,
+    /// Faults of one instrument that would each explain why it misses recordings, in words; none where none does.
+    pub instrument: Option<String>,
+    /// Held-out recordings that the diagnosed model misses, each with the reason that was found; empty where there are none.
+    pub holdout_missed: Vec<String>,
+}
+
+/// Size of a residual.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Residual {
+    /// Root mean square over samples that count, in N.
+    pub rmse_n: f64,
+    /// The same over all samples, reversals and what came before the first motion included, in N.
+    pub rmse_all_n: f64,
+}
+
+/// How far a refit moves a free base parameter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Shift {
+    /// Parameter or composite.
+    pub parameter: String,
+    /// Value in the model as given.
+    pub given: f64,
+    /// Value in the refitted model.
+    pub refitted: f64,
+    /// Unit of both, and of the standard error.
+    pub unit: String,
+    /// Standard error of the difference, that of the given model and that of the refit together; none where neither has one.
+    pub stderr: Option<f64>,
+    /// Difference over its standard error; none where that is not known.
+    pub standard_errors: Option<f64>,
 }
 
 /// An interval of one coordinate in which the residual exceeds the noise floor.

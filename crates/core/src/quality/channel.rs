@@ -146,7 +146,8 @@ pub fn quantization_step(values: &[f64]) -> Option<f64> {
     let multiples =
         gaps.iter().filter(|&&gap| (gap / step - (gap / step).round()).abs() < 0.05 * (gap / step).clamp(1.0, 4.0));
     let few_values = span / step < 70_000.0;
-    (few_values && multiples.count() as f64 > 0.98 * gaps.len() as f64).then_some(step)
+    let explained = few_values && multiples.count() as f64 > 0.98 * gaps.len() as f64;
+    explained.then_some(step).or_else(|| super::printed_step::behind_digits(&sorted))
 }
 
 /// Counts samples stuck at the ends of a channel, over consecutive values.

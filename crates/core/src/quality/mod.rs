@@ -6,6 +6,7 @@
 
 pub mod channel;
 pub mod out_of_range;
+mod printed_step;
 pub mod recording;
 
 pub use channel::ChannelQuality;

@@ -4,13 +4,15 @@
 //! [`spikes`] and [`frozen`] find samples that no muscle makes; [`scale`] finds units that ranges do not show, [`zero`], after a fit,
 //! a gauge whose zero is elsewhere;
 //! [`channels`] finds swapped channels, a force of the wrong sign and recordings that disagree with one another;
-//! [`twice`] finds a recording that is there twice; [`lag`] finds a channel that lags the others. All but the last refuse the recording, because a fit
-//! would absorb the fault in its parameters; a lag is a warning.
+//! [`twice`] finds a recording that is there twice; [`lag`] finds a channel that lags the others; [`reading`] says what an
+//! instrument would have to read wrong where a model that is known misses a recording. All but the last two refuse the recording,
+//! because a fit would absorb the fault in its parameters.
 
 pub mod channels;
 pub mod frozen;
 pub mod lag;
 pub mod ranges;
+pub mod reading;
 pub mod scale;
 pub mod spikes;
 pub mod twice;

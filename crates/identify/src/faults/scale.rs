@@ -54,6 +54,19 @@ const PRESSURES: [(f64, &str); 8] = [
     (0.01, "kPa under a header that says bar is a factor of 100"),
 ];
 
+/// Largest difference between a gain and the ratio of two units that it stands for: more than a load cell is off.
+const UNIT_WITHIN: f64 = 0.04;
+
+/// Which units under the wrong name make a force or a pressure read `gain` times what it is.
+pub(super) fn unit_words(channel: &str, gain: f64) -> Option<&'static str> {
+    let table: &[(f64, &str)] = match channel {
+        "force" => &FORCES,
+        "pressure" => &PRESSURES,
+        _ => return None,
+    };
+    table.iter().find(|(factor, _)| (gain * factor - 1.0).abs() < UNIT_WITHIN).map(|(_, words)| *words)
+}
+
 /// A unit under the wrong name, as a gain that no muscle has, in one recording; or a gauge that falls below zero.
 pub fn find(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
     let path = || gate.recording.path.clone();

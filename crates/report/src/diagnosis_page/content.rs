@@ -13,6 +13,8 @@ pub struct DiagnosisPage {
     pub statement: String,
     /// What a person should know before using the diagnosis.
     pub warnings: Vec<String>,
+    /// The model before it was refitted; none where that is not known.
+    pub as_given: Option<PageGiven>,
     /// Residuals before and after, on the recordings that the effects were fitted to.
     pub estimation: PageFit,
     /// The same on recordings that nothing was fitted to.
@@ -33,6 +35,40 @@ pub struct DiagnosisPage {
     pub isolability: Option<PageIsolability>,
     /// How the diagnosis came about.
     pub appendix: PageAppendix,
+}
+
+/// The model as it was given, before it was refitted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageGiven {
+    /// Residual on the recordings used for fitting, in N.
+    pub rmse_n: f64,
+    /// Residual on held-out recordings, in N.
+    pub holdout_rmse_n: Option<f64>,
+    /// Residual of the refitted model, in N.
+    pub refitted_rmse_n: f64,
+    /// Whether it misses the recordings by clearly more than the refitted model does.
+    pub misses: bool,
+    /// Fault of an instrument that would explain that, in words.
+    pub instrument: Option<String>,
+    /// Held-out recordings that are missed, in words.
+    pub holdout_missed: Vec<String>,
+    /// Free base parameters, the one that moved most first.
+    pub shifts: Vec<PageShift>,
+}
+
+/// How far a refit moves a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageShift {
+    /// Name.
+    pub parameter: String,
+    /// Value as given.
+    pub given: f64,
+    /// Value after the refit.
+    pub refitted: f64,
+    /// Unit of both.
+    pub unit: String,
+    /// Difference over its standard error; none where that is not known.
+    pub standard_errors: Option<f64>,
 }
 
 /// What is to be believed.

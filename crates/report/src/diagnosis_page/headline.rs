@@ -12,6 +12,11 @@ pub(super) fn headline(page: &DiagnosisPage) -> String {
         PageVerdict::Ambiguous => ("ambiguous", "The mismatch has more than one explanation"),
         PageVerdict::Unexplained => ("unexplained", "Part of the mismatch has no name"),
     };
+    let words = match &page.as_given {
+        Some(given) if given.misses => "The model as given is not that of these recordings",
+        Some(given) if !given.holdout_missed.is_empty() => "What was held out differs from what was fitted",
+        _ => words,
+    };
     let after = !page.effects.is_empty();
     let mut cards = card_of_fit("On the recordings used for fitting", page.estimation, after);
     cards.push_str(&match page.holdout {

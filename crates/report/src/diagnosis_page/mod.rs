@@ -3,7 +3,7 @@
 //! | section            | says                                                                             |
 //! |--------------------|----------------------------------------------------------------------------------|
 //! | top                | verdict, statement, residuals before and after, noise floor                      |
-//! | mismatch           | whether there is one                                                             |
+//! | mismatch           | whether there is one, and how the model as given compares with its refit         |
 //! | where              | regions; residual against each coordinate, over pressure and contraction, time   |
 //! | what               | effects with equation, parameters, evidence, rivals; everything that was weighed |
 //! | what it buys       | held-out recordings before and after; a loop before and after                    |
@@ -18,6 +18,7 @@ mod content;
 mod coordinate;
 mod ending;
 mod fit_bars;
+mod given;
 mod headline;
 mod html;
 mod loops;
@@ -33,7 +34,8 @@ mod time_lines;
 
 pub use content::{
     DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageEffect, PageEvidence, PageExperiment, PageFit,
-    PageImplausible, PageInput, PageIsolability, PageParameter, PageRegion, PageSymbol, PageUnknown, PageVerdict,
+    PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter, PageRegion, PageShift, PageSymbol,
+    PageUnknown, PageVerdict,
 };
 pub use coordinate::PageCoordinate;
 pub use recording::PageRecording;
@@ -91,7 +93,12 @@ fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
     } else {
         String::new()
     };
+    // Where only the model as given misses the recordings, its refit follows them.
+    let refit_follows = page.regions.is_empty() && page.effects.is_empty() && page.unknown.regions.is_empty();
     let verdict = match page.verdict {
+        PageVerdict::Unexplained if refit_follows => {
+            "The verdict is that of the model as given and of what was held out."
+        }
         PageVerdict::Consistent => {
             "That is within what noise, the uncertainty of the parameters or the limit of what matters allow."
         }
@@ -106,5 +113,6 @@ fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
     let svg = fit_bars::fit_bars("Residual before and after", &fits, !page.effects.is_empty())?;
     let caption = "Residual, root mean square over samples whose direction of motion is settled. No model comes below \
                    the noise floor but by fitting noise.";
-    Ok(paragraph(&text) + &figure(&svg, caption))
+    let given = page.as_given.as_ref().map_or(String::new(), given::given);
+    Ok(paragraph(&text) + &figure(&svg, caption) + &given)
 }

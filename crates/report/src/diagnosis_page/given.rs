@@ -1,0 +1,37 @@
+//! The model as it was given: what it misses before anything is refitted, and how far a refit moves its parameters.
+
+use super::PageGiven;
+use super::html::{heading, list, newtons, paragraph, table};
+use crate::Table;
+use crate::number::{engineering, significant};
+
+/// Part of the section on the mismatch.
+pub(super) fn given(given: &PageGiven) -> String {
+    let held_out =
+        given.holdout_rmse_n.map_or(String::new(), |rmse_n| format!(", {} on what was held out", newtons(rmse_n)));
+    let verdict = if given.misses {
+        " It misses them: they are of another muscle, or an instrument reads otherwise."
+    } else {
+        ""
+    };
+    let mut html = heading("The model as given")
+        + &paragraph(&format!(
+            "Before anything is refitted the model leaves {} on these recordings{held_out}; refitted it leaves {}.{verdict}",
+            newtons(given.rmse_n),
+            newtons(given.refitted_rmse_n)
+        ));
+    if let Some(instrument) = &given.instrument {
+        html.push_str(&paragraph(&format!("An instrument alone would explain that: {instrument}.")));
+    }
+    html.push_str(&list(&given.holdout_missed));
+    if given.shifts.is_empty() {
+        return html;
+    }
+    let mut shifts = Table::new(["parameter", "as given", "refitted", "standard errors"]);
+    for shift in &given.shifts {
+        let errors = shift.standard_errors.map_or("not known".to_owned(), |errors| significant(errors, 2));
+        let value = |value: f64| engineering(value, &shift.unit, 4);
+        shifts.row([shift.parameter.clone(), value(shift.given), value(shift.refitted), errors]);
+    }
+    html + &table(&shifts)
+}
