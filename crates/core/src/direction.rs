@@ -70,6 +70,9 @@ pub struct Thresholds {
     pub length_m: f64,
     /// Likewise for the pressure, where the length stands still, in Pa.
     pub pressure_pa: f64,
+    /// Travel in which friction turns over after a reversal, in m; models that do not say turn over at once.
+    #[serde(default)]
+    pub turn_m: f64,
     /// What friction does while the length stands still; models that do not say follow the pressure at once.
     #[serde(default = "at_once")]
     pub standstill: Standstill,
@@ -319,6 +322,8 @@ fn states_of(
     let moved = |still: &std::ops::Range<usize>| range(&pressure[still.clone()]) > thresholds.pressure_pa;
     let resting: Vec<(std::ops::Range<usize>, bool)> =
         resting.into_iter().map(|still| (still.clone(), moved(&still))).collect();
+    let pushed: Vec<std::ops::Range<usize>> =
+        resting.iter().filter(|(_, moved)| *moved).map(|(still, _)| still.clone()).collect();
     if let Standstill::Slides { over_pa } = thresholds.standstill
         && over_pa <= 2.0 * thresholds.pressure_pa
     {
@@ -347,7 +352,48 @@ fn states_of(
             states[still.end..still.end + unmoved].fill(after);
         }
     }
+    if thresholds.turn_m > 0.0 {
+        let pushed = if thresholds.standstill == Standstill::Held { Vec::new() } else { pushed };
+        turn_over(&contraction, thresholds.turn_m, carried, &pushed, &mut states);
+    }
     states
+}
+
+/// Lets the states follow the travel of the smooth `contraction`, from where they are to the sign of the motion within
+/// `turn_m`; over the stretches `pushed` the pressure moves it.
+fn turn_over(
+    contraction: &[f64],
+    turn_m: f64,
+    carried: Bounds,
+    pushed: &[std::ops::Range<usize>],
+    states: &mut [State],
+) {
+    let mut pushed = pushed.iter().peekable();
+    let mut state = carried.is_known().then(|| carried.middle());
+    let mut sign = carried.sign();
+    let mut farthest = contraction[0];
+    for (row, now) in states.iter_mut().enumerate() {
+        if !now.bounds.is_known() {
+            continue;
+        }
+        while pushed.next_if(|still| still.end <= row).is_some() {}
+        if pushed.peek().is_some_and(|still| still.contains(&row)) {
+            state = Some(now.bounds.middle());
+            (sign, farthest) = (0, contraction[row]);
+            continue;
+        }
+        let way = now.bounds.sign();
+        if way != sign {
+            (sign, farthest) = (way, contraction[row]);
+        }
+        let way = f64::from(way);
+        let travel_m = (way * (contraction[row] - farthest)).max(0.0);
+        farthest += way * travel_m;
+        // Nothing is known of what came before the first motion.
+        let turned = state.map_or(way, |state| (state + 2.0 * way * travel_m / turn_m).clamp(-1.0, 1.0));
+        state = Some(turned);
+        now.bounds = Bounds::at(turned);
+    }
 }
 
 /// What marks say, with `carried` before the first motion.
@@ -642,7 +688,8 @@ mod tests {
     use rand::SeedableRng;
     use rand_distr::{Distribution, Normal};
 
-    const THRESHOLDS: Thresholds = Thresholds { length_m: 150e-6, pressure_pa: 2e3, standstill: Standstill::AT_ONCE };
+    const THRESHOLDS: Thresholds =
+        Thresholds { length_m: 150e-6, pressure_pa: 2e3, turn_m: 0.0, standstill: Standstill::AT_ONCE };
 
     /// ±1, ±2 where unsettled, 0 where unknown.
     fn marks_under(standstill: Standstill, pressure_pa: &[f64], length_m: &[f64]) -> Vec<i8> {

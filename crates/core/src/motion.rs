@@ -280,7 +280,8 @@ mod tests {
     use rand_distr::{Distribution, Normal};
     use std::fmt::Write as _;
 
-    const THRESHOLDS: Thresholds = Thresholds { length_m: 1.5e-4, pressure_pa: 2.5e3, standstill: Standstill::AT_ONCE };
+    const THRESHOLDS: Thresholds =
+        Thresholds { length_m: 1.5e-4, pressure_pa: 2.5e3, turn_m: 0.0, standstill: Standstill::AT_ONCE };
 
     fn base() -> ForceModel {
         ForceModel::new(&nominal(), 3e9, Form::Corrected, BaseParameters { theta: [0.0; 8] })

@@ -411,8 +411,12 @@ mod tests {
             repairs: Repairs::default(),
             ignored_columns: Vec::new(),
         };
-        let thresholds =
-            Thresholds { length_m: 1e-4, pressure_pa: 1e3, standstill: pam_core::direction::Standstill::AT_ONCE };
+        let thresholds = Thresholds {
+            length_m: 1e-4,
+            pressure_pa: 1e3,
+            turn_m: 0.0,
+            standstill: pam_core::direction::Standstill::AT_ONCE,
+        };
         direct(gate(vec![recording]).unwrap(), thresholds, Form::Corrected).unwrap().remove(0)
     }
 
@@ -423,8 +427,12 @@ mod tests {
         let refused = evaluate(std::slice::from_ref(&still), &model()).unwrap_err();
         assert!(matches!(refused, IdentifyError::NothingCounted { n_rows: 200, .. }), "{refused}");
         let augmented = AugmentedModel::from(model());
-        let thresholds =
-            Thresholds { length_m: 1e-4, pressure_pa: 1e3, standstill: pam_core::direction::Standstill::AT_ONCE };
+        let thresholds = Thresholds {
+            length_m: 1e-4,
+            pressure_pa: 1e3,
+            turn_m: 0.0,
+            standstill: pam_core::direction::Standstill::AT_ONCE,
+        };
         assert!(evaluate_augmented(&[still], &augmented, thresholds).is_err());
     }
 

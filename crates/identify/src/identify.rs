@@ -200,6 +200,7 @@ impl Checked {
         let validation = self.gates.split_off(self.n_estimation);
         let from_noise = thresholds(&self.gates, &self.muscle.muscle);
         let thresholds = Thresholds {
+            turn_m: 0.0,
             standstill: from_noise.standstill,
             length_m: self.length_play_m.unwrap_or(from_noise.length_m),
             pressure_pa: self.pressure_play_pa.unwrap_or(from_noise.pressure_pa),
@@ -210,7 +211,10 @@ impl Checked {
         let mut estimation = direct(std::mem::take(&mut self.gates), thresholds, self.form)?;
         let columns = ForceColumns::new(&self.muscle.muscle, self.muscle.strand_modulus_pa, self.form, largest_n_per_m);
         let laws = self.judge_standstill(&estimation, &columns, thresholds)?;
-        let thresholds = Thresholds { standstill: laws[0].standstill, ..thresholds };
+        let mut thresholds = Thresholds { standstill: laws[0].standstill, ..thresholds };
+        if self.form == Form::Corrected {
+            thresholds.turn_m = standstill::turn_m(&estimation, &columns, thresholds)?;
+        }
         redirect(&mut estimation, thresholds, self.form)?;
         let mut validation = direct(validation, thresholds, self.form)?;
         let condensed = condense(&estimation, &columns, 1, None)?;

@@ -20,6 +20,13 @@ use crate::prepare::Prepared;
 /// Pressures over which friction may turn over, in Pa; nothing for any change that is not noise.
 const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 
+/// The same for a travel in which friction turns over, which shows in a few samples only.
+const HARDLY: f64 = 5e-4;
+
+/// Travels in which friction may turn over, in m. No strand turns over at once; what takes longer is pre-sliding, an effect
+/// with a name.
+const TURNS_M: [f64; 5] = [1.5e-5, 3e-5, 6e-5, 1e-4, 1.6e-4];
+
 /// Rows that the laws are compared on, at most.
 const MOST_ROWS: usize = 60_000;
 
@@ -42,14 +49,8 @@ pub fn judge(
     let judged: Result<Vec<StandstillFit>, IdentifyError> = laws
         .into_par_iter()
         .map(|standstill| {
-            let mut total = Summary::new(N_COLUMNS);
-            for prepared in recordings {
-                let part = condensed(prepared, columns, Thresholds { standstill, ..thresholds }, stride)
-                    .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
-                total.merge(&part);
-            }
-            let mean_square = total.residual_floor_square_sum() / total.n_rows().max(1) as f64;
-            Ok(StandstillFit { standstill, rmse_n: mean_square.sqrt() })
+            let left = mean_square(recordings, columns, Thresholds { standstill, ..thresholds }, stride)?;
+            Ok(StandstillFit { standstill, rmse_n: left.sqrt() })
         })
         .collect();
     let mut judged = judged?;
@@ -62,6 +63,40 @@ pub fn judge(
         rank(left).total_cmp(&rank(right))
     });
     Ok(judged)
+}
+
+/// The travel in which friction turns over after a reversal, in m: the one of [`TURNS_M`] that leaves least of the force; none
+/// where nothing is clearly gained.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn turn_m(recordings: &[Prepared], columns: &ForceColumns, thresholds: Thresholds) -> Result<f64, IdentifyError> {
+    let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
+    let stride = n_rows.div_ceil(MOST_ROWS).max(1);
+    let at_once = mean_square(recordings, columns, Thresholds { turn_m: 0.0, ..thresholds }, stride)?;
+    let judged: Result<Vec<(f64, f64)>, IdentifyError> = TURNS_M
+        .into_par_iter()
+        .map(|turn_m| Ok((mean_square(recordings, columns, Thresholds { turn_m, ..thresholds }, stride)?, turn_m)))
+        .collect();
+    let judged = judged?;
+    let best = judged.into_iter().min_by(|left, right| left.0.total_cmp(&right.0));
+    Ok(best.filter(|(left, _)| *left < (1.0 - HARDLY) * at_once).map_or(0.0, |(_, turn_m)| turn_m))
+}
+
+/// What the columns leave of the force under `thresholds`, in N².
+fn mean_square(
+    recordings: &[Prepared],
+    columns: &ForceColumns,
+    thresholds: Thresholds,
+    stride: usize,
+) -> Result<f64, IdentifyError> {
+    let mut total = Summary::new(N_COLUMNS);
+    for prepared in recordings {
+        let part = condensed(prepared, columns, thresholds, stride)
+            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+        total.merge(&part);
+    }
+    Ok(total.residual_floor_square_sum() / total.n_rows().max(1) as f64)
 }
 
 fn condensed(

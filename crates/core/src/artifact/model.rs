@@ -511,7 +511,12 @@ mod tests {
                 length_rate_m_per_s: 0.03,
                 pressure_rate_pa_per_s: 2.9e5,
             },
-            direction: Thresholds { length_m: 150e-6, pressure_pa: 2.5e3, standstill: Standstill::AT_ONCE },
+            direction: Thresholds {
+                length_m: 150e-6,
+                pressure_pa: 2.5e3,
+                turn_m: 0.0,
+                standstill: Standstill::AT_ONCE,
+            },
             standstill_laws: Vec::new(),
             quality: Vec::new(),
             search: SearchReport { starts: Vec::new(), converged: true, column_floor_rmse_n: 1.0 },
@@ -614,7 +619,7 @@ mod tests {
     #[test]
     fn a_direction_that_flips_before_it_turns_is_refused() {
         let mut turned = artifact(vec![]);
-        turned.direction = Thresholds { length_m: 0.0, pressure_pa: 0.0, standstill: Standstill::Held };
+        turned.direction = Thresholds { length_m: 0.0, pressure_pa: 0.0, turn_m: 0.0, standstill: Standstill::Held };
         turned.check().expect("no threshold is one");
         turned.direction.length_m = -1.0;
         assert_eq!(turned.check(), Err("a threshold of the direction is negative: -1 m, 0 Pa".to_owned()));
