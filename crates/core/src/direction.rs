@@ -549,8 +549,13 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
             && let Some(found) = Turn::of(raw, turn.min(index), reach, new_sign, threshold)
         {
             turn = found.row.clamp(last_turn, index);
-            doubtful = turn.saturating_sub(found.doubt).max(last_turn);
-            settled_from = turn + found.doubt;
+            // Within the noise of the length from where it turned nobody knows which way it went.
+            let within = |row: &usize| (smooth[*row] - smooth[turn]).abs() < NOISE * threshold;
+            let most = 3 * took + half;
+            let before = (last_turn..turn).rev().take_while(within).take(most).count();
+            let behind = (turn..index).take_while(within).take(most).count();
+            doubtful = turn.saturating_sub(found.doubt.max(before)).max(last_turn);
+            settled_from = turn + found.doubt.max(behind);
         }
         last_turn = turn.min(index);
         if sign == 0 {
@@ -572,6 +577,9 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
     }
 }
 
+/// Deviations of the noise in a threshold.
+const NOISE: f64 = 0.2;
+
 /// Where a path turns: the vertex of the parabola or the corner of the two lines that describe it around there, whichever
 /// leaves less.
 struct Turn {
@@ -589,7 +597,7 @@ impl Turn {
     /// The turn around `row` of `raw`, behind which it goes the way of `sign`, from as many rows on either side.
     /// `threshold` is five deviations of the noise. None where there is none.
     fn of(raw: &[f64], row: usize, reach: usize, sign: i8, threshold: f64) -> Option<Self> {
-        let noise = 0.2 * threshold;
+        let noise = NOISE * threshold;
         let mut row = row;
         let mut doubt = 0.0;
         for _ in 0..Self::ROUNDS {
@@ -861,5 +869,35 @@ mod tests {
         assert!(marks[..600].iter().all(|&mark| mark == 0));
         assert!(marks[720..1500].iter().all(|&mark| mark == -1));
         assert!(marks[1950..].iter().all(|&mark| mark == 1));
+    }
+
+    #[test]
+    fn a_sine_turns_at_its_vertex_and_a_triangle_at_its_corner() {
+        let (n, period) = (4000, 400.0);
+        let noise = noise(n, 20e-6, 8);
+        let sine = |at: usize| 0.005 * (2.0 * std::f64::consts::PI * at as f64 / period).cos();
+        let triangle = |at: usize| 0.005 * ((at as f64 / period + 0.25).rem_euclid(1.0) * 4.0 - 2.0).abs();
+        for (path, shift) in [(&sine as &dyn Fn(usize) -> f64, 0.0), (&triangle, 0.25)] {
+            let length: Vec<f64> = (0..n).map(|at| 0.24 + path(at) + noise[at]).collect();
+            let marks = marks(&vec![3e5; n], &length);
+            for (row, pair) in marks.windows(2).enumerate().skip(100) {
+                if pair[0].signum() != pair[1].signum() {
+                    let turns = 2.0 * ((row + 1) as f64 / period + shift);
+                    assert!((turns - turns.round()).abs() * period < 8.0, "row {row}: {turns}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn friction_turns_over_within_its_travel() {
+        let n = 4000;
+        let length: Vec<f64> = (0..n).map(|at| 0.24 + 1e-5 * (at as f64 - 2000.0).abs()).collect();
+        let thresholds = Thresholds { turn_m: 1e-3, standstill: Standstill::Held, ..THRESHOLDS };
+        let states = states_of(&times(n), &vec![3e5; n], &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
+        let state = |row: usize| states[row].bounds.middle();
+        assert!((state(1900) - 1.0).abs() < 1e-9);
+        assert!((state(2050) - 0.0).abs() < 0.05, "{}", state(2050));
+        assert!((state(2110) + 1.0).abs() < 1e-9, "{}", state(2110));
     }
 }

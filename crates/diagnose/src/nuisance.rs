@@ -359,4 +359,16 @@ mod tests {
             assert!((carried_n - state.nuisance_n[at]).abs() < 1e-6, "{carried_n} {}", state.nuisance_n[at]);
         }
     }
+
+    #[test]
+    fn a_map_that_is_drawn_to_zero_takes_up_nothing() {
+        let mut given = Given::of(&["isobaric-triangles", "isometric-ramps"], &[]);
+        for instant in &mut given.track.instants {
+            instant.force_n += 8.0 * (20.0 * instant.moment.contraction_ratio).sin();
+        }
+        let map = NONE.with_map(&given.track, &Coordinates::of(&given.track));
+        let (loose_n, tight_n) = (left_n(&given, &map), left_n(&given, &map.tightened(1e7)));
+        let bare_n = left_n(&given, &NONE);
+        assert!(loose_n < 0.3 * bare_n && tight_n > 0.95 * bare_n, "{loose_n} {tight_n} {bare_n}");
+    }
 }

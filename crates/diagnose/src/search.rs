@@ -78,6 +78,8 @@ pub struct Taken {
 const LEAST_SHARE: f64 = 0.1;
 /// Share of the whole mismatch that a further effect must explain to be taken, unless its evidence is strong.
 const LEAST_OF_ALL: f64 = 0.04;
+/// The same where held-out recordings will confirm or deny it.
+const LEAST_OF_CONFIRMED: f64 = 0.02;
 /// Sum of `ln(without / with)` over held-out blocks that an effect must reach: as if one block were explained and nothing
 /// lost elsewhere.
 const LEAST_LOG_RATIO: f64 = 1.5;
@@ -378,11 +380,13 @@ fn worth(tried: &Tried, best: &Judged, base: &Judged, floor_square: f64, limits:
     // What the sensors leave is the measure; what else no model gets below is no license to overlook.
     let measure = full_floor.min(SENSORS * limits.sensor_floor_n.powi(2));
     let matters = limits.matters_above_n.map_or(0.25 * measure, |limit_n| limit_n * limit_n);
+    let is_confirmed = limits.confirmed && !trial.guess.effect.is_static();
+    let least_of_all = if is_confirmed { LEAST_OF_CONFIRMED } else { LEAST_OF_ALL };
     let least_log_ratio = if further { FURTHER_LOG_RATIO } else { LEAST_LOG_RATIO };
     gained > LEAST_SHARE * mismatch
         && gained > matters
         && trial.log_ratio > least_log_ratio
-        && (!further || gained > LEAST_OF_ALL * whole || trial.log_ratio > STRONG_LOG_RATIO)
+        && (!further || gained > least_of_all * whole || trial.log_ratio > STRONG_LOG_RATIO)
 }
 
 /// Probability that an improvement of held-out blocks is chance: a t-test on the log ratios of the blocks that it touches.

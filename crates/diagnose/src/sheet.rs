@@ -190,3 +190,22 @@ fn split_off<'a, T>(slice: &mut &'a mut [T], n: usize) -> &'a mut [T] {
 fn start(guesses: &[Guess], model: &ForceModel) -> Vec<Box<dyn Memory>> {
     guesses.iter().map(|guess| guess.effect.start(model.muscle(), &guess.shape)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::rehearsal::tests::Given;
+
+    #[test]
+    fn a_muscle_that_has_worked_begins_warm_and_cools() {
+        let given = Given::of(&["isobaric-triangles", "isometric-ramps"], &[]);
+        let guess = given.guess("thermal-softening", &[200.0]);
+        let state = given.setting().fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let columns = given.setting().beginnings(&state, &guess);
+        assert_eq!(columns.len(), given.track.recordings.len());
+        for (column, range) in columns.iter().zip(&given.track.recordings) {
+            let size = |at: usize| (column[at] / state.sheet.base[at].latex_n()).abs();
+            assert!(size(range.start) > 1e-9 && size(range.end - 1) < size(range.start));
+            assert!((0..column.len()).filter(|at| !range.contains(at)).all(|at| column[at] == 0.0));
+        }
+    }
+}

@@ -34,7 +34,7 @@ pub(crate) fn confirmed(question: &Question<'_>, track: &Track, mut found: Found
         .with_reversals(heldout, &coordinates, &found.best.state.model)
         .with_map(heldout, &coordinates);
     let held = question.setting(heldout, &beside);
-    while let Some(index) = denied(&held, &found.best.state) {
+    while let Some(index) = denied(&held, &found) {
         let Some(rest) = setting.fit_without(&found.best.state, index).and_then(|state| judged(&setting, state)) else {
             break;
         };
@@ -48,24 +48,36 @@ pub(crate) fn confirmed(question: &Question<'_>, track: &Track, mut found: Found
     found
 }
 
-/// The effect of `state` that what was held out denies most clearly.
-fn denied(held: &Setting<'_>, state: &State) -> Option<usize> {
+/// The effect of `found` that what was held out denies most clearly, or does not confirm where another one is stronger: what is
+/// left of the strongest is easily taken for a second one.
+fn denied(held: &Setting<'_>, found: &Found) -> Option<usize> {
+    let state = &found.best.state;
+    let evidence = |index: usize| found.taken.get(index).map_or(0.0, |taken| taken.without.log_ratio(&taken.with));
+    let strongest = (0..state.guesses.len()).max_by(|left, right| evidence(*left).total_cmp(&evidence(*right)));
     let mut least: Option<(f64, usize)> = None;
     for (index, guess) in state.guesses.iter().enumerate() {
-        // An event is none of the others' recordings; in the place of a static effect the static map would do as well.
-        if guess.effect.kind() == Kind::Event || guess.effect.is_static() {
+        // An event is none of the others' recordings; in the place of a smooth static effect the static map would do as well.
+        if guess.effect.kind() == Kind::Event || guess.effect.is_static() && !guess.effect.is_local() {
             continue;
         }
-        let Some(most) = most_seen(held, state, index) else { continue };
-        if most < SEEN && least.is_none_or(|(lowest, _)| most < lowest) {
+        let share = share(held, state, index);
+        let most = match share {
+            Some((share, error)) if share + SURELY * error < SEEN => share + SURELY * error,
+            Some((share, error)) if strongest == Some(index) || share - SURELY * error > 0.0 => continue,
+            Some((share, _)) => share.max(SEEN),
+            None if strongest == Some(index) => continue,
+            None => SEEN,
+        };
+        if least.is_none_or(|(lowest, _)| most < lowest) {
             least = Some((most, index));
         }
     }
     least.map(|(_, index)| index)
 }
 
-/// The largest share of its size with which effect `index` may be there on what was held out; none where nothing can be said.
-fn most_seen(held: &Setting<'_>, state: &State, index: usize) -> Option<f64> {
+/// The share of its size with which effect `index` is there on what was held out, and its standard error; none where nothing can
+/// be said.
+fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<(f64, f64)> {
     let whole_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), state.terms()).without_events());
     let mut others = state.terms();
     others.remove(index);
@@ -118,8 +130,8 @@ fn most_seen(held: &Setting<'_>, state: &State, index: usize) -> Option<f64> {
     let variance = counted.iter().map(|&at| left[at].powi(2)).sum::<f64>() / counted.len().max(1) as f64;
     // No residual is known better than the sensors.
     let plain = correlated_instants(held, &left) * variance.max(held.floor_square) / square;
-    let most = share + SURELY * jackknife.max(plain).sqrt();
-    most.is_finite().then_some(most)
+    let error = jackknife.max(plain).sqrt();
+    (share.is_finite() && error.is_finite()).then_some((share, error))
 }
 
 /// Force that `model` predicts at every instant of `track`, in N.
@@ -137,4 +149,29 @@ fn force_n(track: &Track, model: &AugmentedModel) -> Vec<f64> {
         forces_n.extend(moments.into_iter().map(|moment| memory.force_n(model, moment)));
     }
     forces_n
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    /// The share of a lag of 150 ms in `held`, where `fitted` has all of it, and its standard error.
+    fn seen(held: &Given, fitted: &Given) -> Option<(f64, f64)> {
+        let state = fitted.setting().fit(vec![fitted.guess("pressure-lag", &[0.15])], &fitted.start, &fitted.model)?;
+        let coordinates = Coordinates::of(&held.track);
+        let beside = Nuisance::of_recordings(&held.track, 0.1).with_map(&held.track, &coordinates);
+        share(&held.setting().beside(&beside), &state, 0)
+    }
+
+    #[test]
+    fn an_effect_that_is_held_out_as_well_is_confirmed_and_one_that_is_not_is_denied() {
+        let lag: (&'static str, &[f64], &[f64]) = ("pressure-lag", &[0.15], &[]);
+        let fitted = Given::of(&["isobaric-triangles", "isometric-ramps"], &[lag]);
+        let same = Given::of(&["multisine"], &[lag]);
+        let other = Given::of(&["multisine"], &[]);
+        let (confirmed, denied) = (seen(&same, &fitted).expect("a share"), seen(&other, &fitted).expect("a share"));
+        assert!((confirmed.0 - 1.0).abs() < 0.1, "{confirmed:?}");
+        assert!(denied.0 + SURELY * denied.1 < SEEN, "{denied:?}");
+    }
 }

@@ -25,7 +25,7 @@ const HARDLY: f64 = 5e-4;
 
 /// Travels in which friction may turn over, in m. No strand turns over at once; what takes longer is pre-sliding, an effect
 /// with a name.
-const TURNS_M: [f64; 5] = [1.5e-5, 3e-5, 6e-5, 1e-4, 1.6e-4];
+const TURNS_M: [f64; 4] = [1.5e-5, 3e-5, 6e-5, 1e-4];
 
 /// Rows that the laws are compared on, at most.
 const MOST_ROWS: usize = 60_000;

@@ -234,4 +234,26 @@ mod tests {
         }
         assert_eq!(counter.shares(), (0.4, 0.0));
     }
+
+    #[test]
+    fn colored_noise_is_found_on_a_moving_channel_and_white_noise_as_what_it_is() {
+        let period_s = 0.005;
+        let white = noisy_ramp(0.2);
+        let found = colored_noise_std(&white, period_s).unwrap();
+        assert!((found - 0.2).abs() < 0.01, "{found}");
+        // Neighbors share most of it: second differences see a third of it at most.
+        let mut state = 0.0;
+        let colored: Vec<f64> = white
+            .iter()
+            .enumerate()
+            .map(|(at, value)| {
+                state = 0.9 * state + (value - 0.01 * at as f64);
+                0.01 * at as f64 + state
+            })
+            .collect();
+        let whole = 0.2 / (1.0_f64 - 0.81).sqrt();
+        let found = colored_noise_std(&colored, period_s).unwrap();
+        assert!(noise_std(&colored) < 0.45 * whole && found > 0.6 * whole, "{found} of {whole}");
+        assert_eq!(colored_noise_std(&white, 0.1), None);
+    }
 }

@@ -28,6 +28,10 @@ use crate::prepare::Gated;
 const GAINS: (f64, f64) = (0.6, 1.3);
 /// Gains beyond which there is something wrong for certain: the largest k₁ of a muscle, 1.1, in pounds is 0.25.
 const BEYOND: (f64, f64) = (0.25, 2.7);
+/// Standard errors by which a gain must lie beyond.
+const SURELY: f64 = 3.0;
+/// Rows that share an error with one: what the sum leaves is misfit, not noise.
+const CORRELATED: f64 = 25.0;
 /// Share of the force that the sum has to explain.
 const EXPLAINED: f64 = 0.8;
 /// What a bladder has, for the column `B`, in Pa.
@@ -77,8 +81,10 @@ pub fn find(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
             return Some(Fault::GaugeZero { path: path(), lowest_kpa, shift_kpa });
         }
     }
-    let (gain, explained) = gain(look, muscle)?;
-    if explained < EXPLAINED || (BEYOND.0..=BEYOND.1).contains(&gain) || gain <= 0.0 {
+    let (gain, explained, error) = gain(look, muscle)?;
+    // A pressure that hardly moves does not tell a gain from a zero.
+    let may_be_in_order = gain + SURELY * error > BEYOND.0 && gain - SURELY * error < BEYOND.1;
+    if explained < EXPLAINED || may_be_in_order || gain <= 0.0 {
         return None;
     }
     // A force in a larger unit than its name says is too small, a pressure likewise makes the gain too large.
@@ -92,8 +98,9 @@ pub fn find(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
     (!guesses.is_empty()).then(|| Fault::Gain { path: path(), gain, guesses: guesses.join("; or ") })
 }
 
-/// `g` by least squares, and the share of the force that the sum explains; none where the force says nothing.
-fn gain(look: &Look, muscle: &Muscle) -> Option<(f64, f64)> {
+/// `g` by least squares, the share of the force that the sum explains, and the standard error of `g`; none where the force says
+/// nothing.
+fn gain(look: &Look, muscle: &Muscle) -> Option<(f64, f64, f64)> {
     let (gas, bladder) = (Gas::new(muscle), Bladder::new(muscle));
     // In bar and per hundred newtons, so that the columns are of one size.
     let columns = |pressure_pa: f64, length_m: f64| {
@@ -122,5 +129,6 @@ fn gain(look: &Look, muscle: &Muscle) -> Option<(f64, f64)> {
     if n < 16.0 || spread <= 0.0 {
         return None;
     }
-    Some((found[0], 1.0 - residual / spread))
+    let error = (CORRELATED * residual / n * inverse[(0, 0)]).sqrt();
+    Some((found[0], 1.0 - residual / spread, error))
 }
