@@ -86,6 +86,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     }
 
     console.text(tables::parameters(&artifact));
+    if let Some(words) = tables::friction(&artifact) {
+        console.note(words);
+    }
     console.text(tables::agreement(&artifact));
     if let Some(table) = tables::unbounded(&artifact) {
         console.text(table);

@@ -66,6 +66,24 @@ fn stuck(channel: &ChannelQuality) -> String {
     if share > 0.0 { format!("{:.1} %", 100.0 * share) } else { "-".to_owned() }
 }
 
+/// What friction does where no motion tells its direction, with what the second best law leaves; none where one was assumed.
+pub(crate) fn friction(artifact: &ModelArtifact) -> Option<String> {
+    let [best, second, ..] = artifact.standstill_laws.as_slice() else { return None };
+    let turn_um = artifact.direction.turn_m * 1e6;
+    let turns = if turn_um > 0.0 {
+        format!("within {turn_um:.0} µm of travel after a reversal")
+    } else {
+        "at once after a reversal".to_owned()
+    };
+    Some(format!(
+        "{}, and turns over {turns}; eq. 11 with free weights then leaves {:.3} N, and {:.3} N where {}",
+        best.standstill.words(),
+        best.rmse_n,
+        second.rmse_n,
+        second.standstill.words()
+    ))
+}
+
 /// Parameters with standard errors and status, composites after them.
 pub(crate) fn parameters(artifact: &ModelArtifact) -> String {
     let mut table = Table::new(["parameter", "value", "status"]);

@@ -7,6 +7,10 @@
 //! is known depends on the noise: around it the direction is *unsettled*, and a fit does not count those
 //! samples, as little as those of a sensor that is out of its range.
 //!
+//! A turn is the vertex of the parabola or the corner of the two lines that describe the length around it, whichever leaves
+//! less: the play alone notices it a threshold late. Behind it friction goes from one sign to the other within a travel of
+//! some tens of micrometres ([`Thresholds::turn_m`]), which no strand is without.
+//!
 //! What friction does where the length stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
 //! keeps its last sign, or the strands slide under rising (+1, as if contracting) and falling pressure (-1), at once or only
 //! after the pressure has turned back by some amount. At the beginning of a segment nothing is known of it until the first

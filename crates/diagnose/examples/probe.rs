@@ -18,8 +18,13 @@ fn main() {
     let prepared = direct(gates, model.direction, model.form).unwrap();
     let track = Track::of(&prepared, model.direction, &model.force_model()).unwrap();
     println!("{} instants, {} counted, {} blocks", track.n(), track.n_counted(), track.blocks.len());
-    let limits =
-        Limits { max_effects: 4, excluded: Vec::new(), matters_above_n: None, sensor_floor_n: model.fit.noise_floor_n };
+    let limits = Limits {
+        max_effects: 4,
+        excluded: Vec::new(),
+        matters_above_n: None,
+        sensor_floor_n: model.fit.noise_floor_n,
+        confirmed: false,
+    };
     let question = Question::new(&prepared, &model, limits);
     let Answer { track, found, knocks, sizes } = question.answer(track, &|| {}).unwrap();
     let setting = question.setting(&track, &found.nuisance);

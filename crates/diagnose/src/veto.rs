@@ -60,12 +60,13 @@ fn denied(held: &Setting<'_>, found: &Found) -> Option<usize> {
         if guess.effect.kind() == Kind::Event || guess.effect.is_static() && !guess.effect.is_local() {
             continue;
         }
-        let share = share(held, state, index);
-        let most = match share {
+        // What acts in a part of the range alone may not have been there.
+        let stands = strongest == Some(index) || guess.effect.is_static();
+        let most = match share(held, state, index) {
             Some((share, error)) if share + SURELY * error < SEEN => share + SURELY * error,
-            Some((share, error)) if strongest == Some(index) || share - SURELY * error > 0.0 => continue,
+            Some((share, error)) if stands || share - SURELY * error > 0.0 => continue,
             Some((share, _)) => share.max(SEEN),
-            None if strongest == Some(index) => continue,
+            None if stands => continue,
             None => SEEN,
         };
         if least.is_none_or(|(lowest, _)| most < lowest) {

@@ -17,7 +17,9 @@ pub struct ChannelQuality {
     pub highest: f64,
     /// Standard deviation of the white part of the noise, quantization included.
     pub noise: f64,
-    /// Standard deviation of the noise within [`WITHIN_S`], its colored part and hum included, quantization included.
+    /// Standard deviation of the noise within [`WITHIN_S`], its colored part and hum included, quantization included;
+    /// 0 in models that do not say.
+    #[serde(default)]
     pub colored_noise: f64,
     /// Smallest step between values, where the channel has one.
     pub quantization_step: Option<f64>,
