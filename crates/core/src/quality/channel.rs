@@ -243,7 +243,7 @@ mod tests {
         let white = noisy_ramp(0.2);
         let found = colored_noise_std(&white, period_s).unwrap();
         assert!((found - 0.2).abs() < 0.01, "{found}");
-        // Neighbors share most of it: second differences see a third of it at most.
+        // Neighbors share most of it over a twentieth of a second: second differences see less than half of it.
         let mut state = 0.0;
         let colored: Vec<f64> = white
             .iter()
@@ -255,7 +255,7 @@ mod tests {
             .collect();
         let whole = 0.2 / (1.0_f64 - 0.81).sqrt();
         let found = colored_noise_std(&colored, period_s).unwrap();
-        assert!(noise_std(&colored) < 0.45 * whole && found > 0.6 * whole, "{found} of {whole}");
+        assert!(noise_std(&colored) < 0.45 * whole && found > 0.5 * whole, "{found} of {whole}");
         assert_eq!(colored_noise_std(&white, 0.1), None);
     }
 }
