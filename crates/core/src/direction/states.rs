@@ -3,8 +3,10 @@
 
 use std::ops::Range;
 
+use super::rest::{pushed, standstills};
 use super::turn::{NOISE, Turn};
 use super::{Driver, Standstill, Thresholds};
+use crate::smoothing::Window;
 
 /// Length of the moving average, in s; at least five samples and at most 101 are averaged.
 pub const WINDOW_S: f64 = 0.05;
@@ -79,11 +81,17 @@ pub(super) fn states_of(
     play(&contraction, &shortening, thresholds.length_m, half, carried.sign(), &mut marks);
     let pressure = moving_average(pressure_pa, half);
     let resting = standstills(time_s, &contraction, thresholds.length_m);
-    let moved = |still: &&Range<usize>| range(&pressure[(*still).clone()]) > thresholds.pressure_pa;
-    let pushed: Vec<Range<usize>> = resting.iter().filter(moved).cloned().collect();
+    // Deviation of an average of the length at rest.
+    let noise_m = NOISE * thresholds.length_m / ((2 * half + 1) as f64).sqrt();
+    let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
+    let pushed: Vec<Range<usize>> = (0..resting.len()).filter_map(push).collect();
     if let Standstill::Slides { over_pa } = thresholds.standstill
         && over_pa <= 2.0 * thresholds.pressure_pa
     {
+        let rest_of = |pushed: &Range<usize>| {
+            let still = resting.iter().find(|still| still.contains(&pushed.start));
+            still.map_or(0, |still| still.end - pushed.end)
+        };
         // A standstill in which the pressure rests as well keeps what the length says.
         for still in &pushed {
             let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried.sign() };
@@ -91,7 +99,12 @@ pub(super) fn states_of(
             marks[still.clone()].fill(0);
             play(smooth, raw, thresholds.pressure_pa, half, before, &mut marks[still.clone()]);
             let last = marks[still.end - 1].signum();
-            marks[still.end..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
+            let behind = &mut marks[still.end..];
+            // Until the length turns, or moves at all, friction is what the pressure has made of it.
+            let turn = behind.iter().position(|mark| mark.signum() != before).unwrap_or(behind.len());
+            let turn = if turn < rest_of(still) + 2 * half { turn } else { 0 };
+            behind[..turn].fill(last);
+            behind[turn..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
         }
     }
     let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
@@ -108,20 +121,43 @@ pub(super) fn states_of(
             states[still.end..still.end + unmoved].fill(after);
         }
     }
-    if thresholds.turn_m > 0.0 {
+    if thresholds.held_m > 0.0 || thresholds.turn_m > 0.0 {
         let pushed = if thresholds.standstill == Standstill::Held { &[][..] } else { &pushed };
-        turn_over(&contraction, thresholds.turn_m, carried, pushed, &mut states);
+        let path = path(time_s, &shortening, thresholds);
+        turn_over(&path, thresholds, slow.long, carried, pushed, &mut states);
     }
     states
 }
 
-/// Lets the states follow the travel of the smooth `contraction`, from where they are to the sign of the motion within
-/// `turn_m`; over the stretches `pushed` the pressure moves it.
-fn turn_over(contraction: &[f64], turn_m: f64, carried: Bounds, pushed: &[Range<usize>], states: &mut [State]) {
+/// Deviation that is left in the path that friction turns over on, in m, where the window allows: less than strands give.
+const PATH_M: f64 = 4e-6;
+/// Longest half of that window, in s: half a period of what a muscle does.
+const PATH_S: f64 = 0.15;
+
+/// `shortening` as parabolas describe it, over windows as long as its noise needs.
+fn path(time_s: &[f64], shortening: &[f64], thresholds: Thresholds) -> Vec<f64> {
+    let period_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
+    // A parabola over n values leaves 2.25 / n of the variance in the middle one.
+    let n = 2.25 * (NOISE * thresholds.length_m / PATH_M).powi(2);
+    let window = Window::over(time_s, (0.5 * n * period_s).min(PATH_S));
+    (0..shortening.len()).map(|row| window.parabola(shortening, row).value).collect()
+}
+
+/// Lets the states follow the travel of the smooth `contraction` behind every turn, as `thresholds` say; over the stretches
+/// `pushed` the pressure moves them. A turn is looked for within `reach` rows of where the sign changes.
+fn turn_over(
+    contraction: &[f64],
+    thresholds: Thresholds,
+    reach: usize,
+    carried: Bounds,
+    pushed: &[Range<usize>],
+    states: &mut [State],
+) {
     let mut pushed = pushed.iter().peekable();
     let mut state = carried.is_known().then(|| carried.middle());
     let mut sign = carried.sign();
-    let mut farthest = contraction[0];
+    // The last turn, the state there, and the farthest travel from it.
+    let (mut turn, mut at_turn, mut farthest_m) = (0, state, 0.0);
     for (row, now) in states.iter_mut().enumerate() {
         if !now.bounds.is_known() {
             continue;
@@ -129,18 +165,29 @@ fn turn_over(contraction: &[f64], turn_m: f64, carried: Bounds, pushed: &[Range<
         while pushed.next_if(|still| still.end <= row).is_some() {}
         if pushed.peek().is_some_and(|still| still.contains(&row)) {
             state = Some(now.bounds.middle());
-            (sign, farthest) = (0, contraction[row]);
+            sign = 0;
             continue;
         }
-        let way = now.bounds.sign();
-        if way != sign {
-            (sign, farthest) = (way, contraction[row]);
+        let way = f64::from(now.bounds.sign());
+        if now.bounds.sign() != sign {
+            sign = now.bounds.sign();
+            let around = row.saturating_sub(reach)..contraction.len().min(row + reach);
+            let extreme = around.min_by(|&one, &other| (way * contraction[one]).total_cmp(&(way * contraction[other])));
+            turn = extreme.unwrap_or(row);
+            (at_turn, farthest_m) = (state, 0.0);
         }
-        let way = f64::from(way);
-        let travel_m = (way * (contraction[row] - farthest)).max(0.0);
-        farthest += way * travel_m;
+        if row >= turn {
+            farthest_m = f64::max(farthest_m, way * (contraction[row] - contraction[turn]));
+        }
+        let turned_m = (farthest_m - thresholds.held_m).max(0.0);
         // Nothing is known of what came before the first motion.
-        let turned = state.map_or(way, |state| (state + 2.0 * way * travel_m / turn_m).clamp(-1.0, 1.0));
+        let turned = match at_turn {
+            Some(state) if turned_m == 0.0 => state,
+            Some(state) if thresholds.turn_m > 0.0 => {
+                (state + 2.0 * way * turned_m / thresholds.turn_m).clamp(-1.0, 1.0)
+            }
+            _ => way,
+        };
         state = Some(turned);
         now.bounds = Bounds::at(turned);
     }
@@ -212,15 +259,6 @@ impl Slow<'_> {
             }
         }
     }
-}
-
-fn range(values: &[f64]) -> f64 {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for &value in values {
-        low = low.min(value);
-        high = high.max(value);
-    }
-    high - low
 }
 
 /// Centered average over `2 half + 1` values, over fewer and still centered at the ends.
@@ -327,30 +365,6 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
     }
 }
 
-/// Stretches of at least [`STANDSTILL_S`] in which the values stay within half a threshold of where the
-/// stretch began.
-fn standstills(time_s: &[f64], values: &[f64], threshold: f64) -> Vec<Range<usize>> {
-    let mut found = Vec::new();
-    let mut start = 0;
-    let (mut low, mut high) = (values[0], values[0]);
-    for index in 0..=values.len() {
-        if index < values.len() {
-            low = low.min(values[index]);
-            high = high.max(values[index]);
-            if high - low <= threshold {
-                continue;
-            }
-        }
-        if time_s[index - 1] - time_s[start] >= STANDSTILL_S {
-            found.push(start..index);
-        }
-        if index < values.len() {
-            (start, low, high) = (index, values[index], values[index]);
-        }
-    }
-    found
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -358,7 +372,7 @@ mod tests {
     use rand_distr::{Distribution, Normal};
 
     const THRESHOLDS: Thresholds =
-        Thresholds { length_m: 150e-6, pressure_pa: 2e3, turn_m: 0.0, standstill: Standstill::AT_ONCE };
+        Thresholds { length_m: 150e-6, pressure_pa: 2e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::AT_ONCE };
 
     /// ±1, ±2 where unsettled, 0 where unknown.
     fn marks_under(standstill: Standstill, pressure_pa: &[f64], length_m: &[f64]) -> Vec<i8> {
