@@ -143,42 +143,59 @@ fn path(time_s: &[f64], shortening: &[f64], thresholds: Thresholds) -> Vec<f64> 
     (0..shortening.len()).map(|row| window.parabola(shortening, row).value).collect()
 }
 
-/// Lets the states follow the travel of the smooth `contraction` behind every turn, as `thresholds` say; over the stretches
-/// `pushed` the pressure moves them. A turn is looked for within `reach` rows of where the sign changes.
+/// Lets the states follow the travel along `path` behind every turn, as `thresholds` say; over the stretches `pushed` the
+/// pressure moves them. A turn is where the path is farthest, within `reach` rows of where the sign changes.
 fn turn_over(
-    contraction: &[f64],
+    path: &[f64],
     thresholds: Thresholds,
     reach: usize,
     carried: Bounds,
     pushed: &[Range<usize>],
     states: &mut [State],
 ) {
-    let mut pushed = pushed.iter().peekable();
+    let mut ways: Vec<i8> = states.iter().map(|state| state.bounds.sign()).collect();
+    let mut is_pushed = vec![false; states.len()];
+    pushed.iter().for_each(|still| is_pushed[still.clone()].fill(true));
     let mut state = carried.is_known().then(|| carried.middle());
     let mut sign = carried.sign();
     // The last turn, the state there, and the farthest travel from it.
     let (mut turn, mut at_turn, mut farthest_m) = (0, state, 0.0);
-    for (row, now) in states.iter_mut().enumerate() {
-        if !now.bounds.is_known() {
+    let mut row = 0;
+    while row < states.len() {
+        if !states[row].bounds.is_known() {
+            row += 1;
             continue;
         }
-        while pushed.next_if(|still| still.end <= row).is_some() {}
-        if pushed.peek().is_some_and(|still| still.contains(&row)) {
-            state = Some(now.bounds.middle());
+        if is_pushed[row] {
+            state = Some(states[row].bounds.middle());
             sign = 0;
+            row += 1;
             continue;
         }
-        let way = f64::from(now.bounds.sign());
-        if now.bounds.sign() != sign {
-            sign = now.bounds.sign();
-            let around = row.saturating_sub(reach)..contraction.len().min(row + reach);
-            let extreme = around.min_by(|&one, &other| (way * contraction[one]).total_cmp(&(way * contraction[other])));
-            turn = extreme.unwrap_or(row);
-            (at_turn, farthest_m) = (state, 0.0);
+        let way = f64::from(ways[row]);
+        if ways[row] != sign {
+            let around = extreme(path, row, reach, way);
+            // What came before the turn still goes the other way, what lies between it and here came this way already.
+            let free = |rows: Range<usize>| rows.into_iter().all(|row| !is_pushed[row] && ways[row] != 0);
+            if sign != 0 && around > row && free(row..around) {
+                ways[row..around].fill(sign);
+                continue;
+            }
+            let back = around.max(turn);
+            let from = if sign != 0 && back < row && free(back..row) { back } else { row };
+            sign = ways[row];
+            ways[from..row].fill(sign);
+            (turn, farthest_m) = (around.min(row), 0.0);
+            at_turn = if from == 0 {
+                state
+            } else if from < row {
+                Some(states[from].bounds.middle())
+            } else {
+                state
+            };
+            row = from;
         }
-        if row >= turn {
-            farthest_m = f64::max(farthest_m, way * (contraction[row] - contraction[turn]));
-        }
+        farthest_m = f64::max(farthest_m, way * (path[row] - path[turn]));
         let turned_m = (farthest_m - thresholds.held_m).max(0.0);
         // Nothing is known of what came before the first motion.
         let turned = match at_turn {
@@ -189,8 +206,15 @@ fn turn_over(
             _ => way,
         };
         state = Some(turned);
-        now.bounds = Bounds::at(turned);
+        states[row].bounds = Bounds::at(turned);
+        row += 1;
     }
+}
+
+/// The row within `reach` of `row` from which `path` goes the way of `way`.
+fn extreme(path: &[f64], row: usize, reach: usize, way: f64) -> usize {
+    let around = row.saturating_sub(reach)..path.len().min(row + reach);
+    around.min_by(|&one, &other| (way * path[one]).total_cmp(&(way * path[other]))).unwrap_or(row)
 }
 
 /// What marks say, with `carried` before the first motion.
