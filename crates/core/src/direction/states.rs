@@ -593,12 +593,63 @@ mod tests {
     fn friction_turns_over_within_its_travel() {
         let n = 4000;
         let length: Vec<f64> = (0..n).map(|at| 0.24 + 1e-5 * (at as f64 - 2000.0).abs()).collect();
-        let thresholds = Thresholds { turn_m: 1e-3, standstill: Standstill::Held, ..THRESHOLDS };
+        let thresholds = Thresholds { length_m: 5e-5, turn_m: 1e-3, standstill: Standstill::Held, ..THRESHOLDS };
         let states = states_of(&times(n), &vec![3e5; n], &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
         let state = |row: usize| states[row].bounds.middle();
         assert!((state(1900) - 1.0).abs() < 1e-9);
         // The average rounds the corner by some tenths of the travel.
         assert!(state(2050).abs() < 0.1, "{}", state(2050));
         assert!((state(2110) + 1.0).abs() < 1e-9, "{}", state(2110));
+    }
+
+    #[test]
+    fn friction_keeps_its_sign_over_a_play_and_a_late_mark_does_not_matter() {
+        let (n, noise) = (4000, noise(4000, 20e-6, 11));
+        let length: Vec<f64> = (0..n).map(|at| 0.24 + 0.005 * (at as f64 / 300.0).cos() + noise[at]).collect();
+        let thresholds = Thresholds { length_m: 1e-4, held_m: 3e-5, standstill: Standstill::Held, ..THRESHOLDS };
+        let states = states_of(&times(n), &vec![3e5; n], &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
+        for turn in 1..4 {
+            let turn_row = (std::f64::consts::PI * f64::from(turn) * 300.0) as usize;
+            // 30 µm from the turn are 33 rows behind it.
+            let flip = (turn_row - 60..turn_row + 120)
+                .find(|&row| states[row].bounds.middle() * states[turn_row - 100].bounds.middle() < 0.0);
+            assert!(flip.is_some_and(|row| row.abs_diff(turn_row + 33) < 15), "{turn_row} {flip:?}");
+        }
+    }
+
+    /// A muscle that comes to rest after 2 s, and the pressure with it; it rests until 4 s and goes on the same way.
+    fn settling(n: usize) -> (Vec<f64>, Vec<f64>) {
+        let noise = noise(n, 8e-6, 5);
+        let done = |at: usize| {
+            let t = (at as f64 / 400.0).min(1.0);
+            t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
+        };
+        let length =
+            (0..n).map(|at| 0.25 + 2e-3 * done(at) + 1e-5 * at.saturating_sub(800) as f64 + noise[at]).collect();
+        let pressure = (0..n).map(|at| 1e5 + 2e5 * done(at)).collect();
+        (pressure, length)
+    }
+
+    #[test]
+    fn a_pressure_that_settles_with_the_length_turns_no_friction() {
+        // Extending under rising pressure: were the end of it a push at rest, friction would turn.
+        let (pressure, length) = settling(1200);
+        let thresholds = Thresholds { length_m: 4e-5, pressure_pa: 700.0, ..THRESHOLDS };
+        let states = states_of(&times(1200), &pressure, &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
+        assert!(states[100..].iter().all(|state| state.bounds.sign() == -1));
+    }
+
+    #[test]
+    fn a_pressure_that_moves_in_half_a_second_of_rest_turns_friction() {
+        let n = 600;
+        let noise = noise(n, 8e-6, 7);
+        let length: Vec<f64> = (0..n)
+            .map(|at| 0.25 + 2e-5 * at.min(200) as f64 + 2e-5 * at.saturating_sub(320) as f64 + noise[at])
+            .collect();
+        let pressure: Vec<f64> = (0..n).map(|at| 1e5 + 1e3 * at.saturating_sub(230).min(60) as f64).collect();
+        let thresholds = Thresholds { length_m: 4e-5, pressure_pa: 700.0, ..THRESHOLDS };
+        let states = states_of(&times(n), &pressure, &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
+        let sign = |row: usize| states[row].bounds.sign();
+        assert_eq!([sign(150), sign(225), sign(260), sign(300), sign(360)], [-1, -1, 1, 1, -1]);
     }
 }

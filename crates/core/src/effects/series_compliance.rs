@@ -144,4 +144,17 @@ mod tests {
         assert!((now.contraction_ratio - muscle.contraction_ratio(0.233)).abs() < 1e-12);
         assert!((now.slide_m - 0.034).abs() < 1e-12);
     }
+
+    #[test]
+    fn a_held_muscle_that_pulls_harder_turns_where_friction_follows_its_own_length() {
+        for (sliding_share, expected) in [(1.0, 1.0), (0.5, 0.0), (0.0, -1.0)] {
+            let mut memory = SeriesCompliance.start(&nominal(), &[2e-5, sliding_share]);
+            let mut now = still();
+            for force_n in [300.0, 301.0, 304.0, 310.0] {
+                now = Moment { force_n, direction: -1.0, ..still() };
+                memory.sees(&mut now);
+            }
+            assert!((now.direction - expected).abs() < 1e-12, "{}", now.direction);
+        }
+    }
 }

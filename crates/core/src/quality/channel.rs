@@ -258,6 +258,22 @@ mod tests {
     }
 
     #[test]
+    fn a_motion_that_a_slow_clock_hardly_follows_is_no_noise() {
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(3);
+        let normal = Normal::new(0.0, 2e-5).unwrap();
+        // 25 Hz: 3 s at rest, 3 s of 10 mm at 1 Hz, and so on.
+        let values: Vec<f64> = (0..1500_i32)
+            .map(|at| {
+                let moves = if at / 75 % 2 == 1 { 0.01 * (0.25 * f64::from(at)).sin() } else { 0.0 };
+                moves + normal.sample(&mut generator)
+            })
+            .collect();
+        let found = noise_std(&values);
+        // Half of the windows move: the quietest fifth of all is the middle of the others, a third above theirs.
+        assert!((1.8e-5..2.8e-5).contains(&found), "{found}");
+    }
+
+    #[test]
     fn colored_noise_is_found_on_a_moving_channel_and_white_noise_as_what_it_is() {
         let period_s = 0.005;
         let white = noisy_ramp(0.2);
