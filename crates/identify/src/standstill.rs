@@ -28,6 +28,8 @@ const TURNS_M: [f64; 4] = [0.0, 2e-5, 5e-5, 1e-4];
 
 /// Rows that the laws are compared on, at most.
 const MOST_ROWS: usize = 60_000;
+/// Rows that travels are compared on, at most, the first of every recording: they show around reversals, at the full rate.
+const TURNING_ROWS: usize = 200_000;
 
 /// Share of the mean square that a law must gain over friction that follows the pressure at once.
 const CLEARLY: f64 = 0.01;
@@ -51,7 +53,7 @@ pub fn judge(
         .into_par_iter()
         .map(|standstill| {
             let left =
-                mean_square(recordings, columns, Thresholds { standstill, ..thresholds }, Counts::Settled, stride)?;
+                mean_square(recordings, columns, Thresholds { standstill, ..thresholds }, Counts::Settled(stride))?;
             Ok(StandstillFit { standstill, rmse_n: left.sqrt() })
         })
         .collect();
@@ -77,14 +79,14 @@ pub fn turning(
     columns: &ForceColumns,
     thresholds: Thresholds,
 ) -> Result<Thresholds, IdentifyError> {
-    let stride = stride(recordings);
+    let first = TURNING_ROWS / recordings.len().max(1);
     let travels: Vec<Thresholds> = HELD_M
         .into_iter()
         .flat_map(|held_m| TURNS_M.map(|turn_m| Thresholds { held_m, turn_m, ..thresholds }))
         .collect();
     let judged: Result<Vec<(f64, Thresholds)>, IdentifyError> = travels
         .into_par_iter()
-        .map(|travels| Ok((mean_square(recordings, columns, travels, Counts::All, stride)?, travels)))
+        .map(|travels| Ok((mean_square(recordings, columns, travels, Counts::First(first))?, travels)))
         .collect();
     let judged = judged?;
     let most = (1.0 - HARDLY) * judged[0].0;
@@ -101,10 +103,10 @@ fn stride(recordings: &[Prepared]) -> usize {
 /// Which rows a law is judged by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Counts {
-    /// Those whose direction is settled, and those before the first motion.
-    Settled,
-    /// All but what was left out of every fit: how friction turns over shows around reversals alone.
-    All,
+    /// Every so many of those whose direction is settled, and of those before the first motion.
+    Settled(usize),
+    /// So many, but for what was left out of every fit: how friction turns over shows around reversals alone.
+    First(usize),
 }
 
 /// What the columns leave of the force under `thresholds`, in N².
@@ -113,11 +115,10 @@ fn mean_square(
     columns: &ForceColumns,
     thresholds: Thresholds,
     counts: Counts,
-    stride: usize,
 ) -> Result<f64, IdentifyError> {
     let mut total = Summary::new(N_COLUMNS);
     for prepared in recordings {
-        let part = condensed(prepared, columns, thresholds, counts, stride)
+        let part = condensed(prepared, columns, thresholds, counts)
             .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
         total.merge(&part);
     }
@@ -129,24 +130,30 @@ fn condensed(
     columns: &ForceColumns,
     thresholds: Thresholds,
     counts: Counts,
-    stride: usize,
 ) -> io::Result<Summary> {
     debug_assert_eq!(columns.form(), Form::Corrected);
-    let direction = Direction::of(&prepared.recording, thresholds, Driver::Motion)?;
-    let mut left_out = vec![false; prepared.recording.samples.n_rows()];
-    prepared.direction.left_out().iter().for_each(|rows| left_out[rows.clone()].fill(true));
+    let n_rows = prepared.recording.samples.n_rows();
+    let (stride, n_rows) = match counts {
+        Counts::Settled(stride) => (stride, n_rows),
+        Counts::First(first) => (1, first.min(n_rows)),
+    };
+    let direction = Direction::of_first(n_rows, &prepared.recording, thresholds, Driver::Motion)?;
+    let mut left_out = vec![false; n_rows];
+    for rows in prepared.direction.left_out() {
+        left_out[rows.start.min(n_rows)..rows.end.min(n_rows)].fill(true);
+    }
     let width = N_COLUMNS + 1;
     let mut summary = Summary::new(N_COLUMNS);
     let mut block = vec![0.0; BLOCK_ROWS * width];
     let mut filled = 0;
     let samples = &prepared.recording.samples;
     let mut row = 0;
-    while row < samples.n_rows() {
+    while row < n_rows {
         let chunk = samples.chunk(row / CHUNK_ROWS)?;
-        while row < chunk.first_row() + chunk.n_rows() {
+        while row < n_rows.min(chunk.first_row() + chunk.n_rows()) {
             let here = row - chunk.first_row();
             let settled = |direction: &Direction| direction.is_settled(row) || !direction.is_known(row);
-            let counts = counts == Counts::All || settled(&direction) && settled(&prepared.direction);
+            let counts = matches!(counts, Counts::First(_)) || settled(&direction) && settled(&prepared.direction);
             if counts && !left_out[row] {
                 let values = columns.row(chunk.pressure_pa()[here], chunk.length_m()[here], direction.sign(row));
                 let force_n = chunk.force_n()[here];

@@ -126,7 +126,14 @@ impl Direction {
     /// # Errors
     /// Where the samples cannot be read back.
     pub fn of(recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
-        let n_rows = recording.samples.n_rows();
+        Self::of_first(recording.samples.n_rows(), recording, thresholds, driver)
+    }
+
+    /// Directions of the first `n_rows` of `recording`.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of_first(n_rows: usize, recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
         let mut all = Self {
             states: Vec::with_capacity(n_rows),
             settled: Vec::with_capacity(n_rows),
@@ -134,6 +141,7 @@ impl Direction {
             left_out: Vec::new(),
         };
         for segment in &recording.segments {
+            let segment = segment.start.min(n_rows)..segment.end.min(n_rows);
             let mut carried = Bounds::UNKNOWN;
             let first = all.states.len();
             for start in segment.clone().step_by(STRETCH_ROWS) {
