@@ -24,6 +24,7 @@ use crate::nuisance::MAP_ID;
 use crate::question::{Answer, Question};
 use crate::regions::{Place, concentrated};
 use crate::search::{Found, Limits, chance};
+use crate::stand_ins;
 use crate::state::Setting;
 use crate::structure::Remainder;
 use crate::track::Track;
@@ -185,10 +186,16 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         found = veto::confirmed(&question, &track, found, &held);
         sizes = Sizes::of(&found, &question.limits);
     }
+    let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
     let nuisance = found.nuisance.clone();
     let setting = question.setting(&track, &nuisance);
     if knocks.is_none() {
-        sizes = without_stand_ins(&setting, &mut found, sizes, &question.limits);
+        let left_over = || {
+            let places = structured(&setting, &found.best.state, &found, &paths);
+            telling(places, &[]).first().map(|region| region.coordinate)
+        };
+        let left_over = if verdict(&found, &sizes, false) == Verdict::Unexplained { left_over() } else { None };
+        sizes = stand_ins::let_go(&setting, &mut found, sizes, &question.limits, left_over);
     }
     given.beside_effects(&question, &track, &found);
     let space = &question.space;
@@ -198,7 +205,6 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let folds = setting.fold_fits(state).ok_or_else(undetermined)?;
     let uncertainty = Uncertainty::of(&folds, space);
     let verdict = verdict(&found, &sizes, knocks.is_some());
-    let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
 
     let correlated = correlated_instants(&setting, &setting.residuals_n(state));
     let (effects, mut entries) = named(&setting, &found, &uncertainty, correlated, knocks.as_ref());
@@ -257,21 +263,6 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         config,
     };
     Ok(diagnosis)
-}
-
-/// Lets go of what was taken where it leaves far more than it explains: the nearest names of something that has none.
-fn without_stand_ins(setting: &Setting<'_>, found: &mut Found, sizes: Sizes, limits: &Limits) -> Sizes {
-    if verdict(found, &sizes, false) != Verdict::Unexplained || !sizes.most_is_left() {
-        return sizes;
-    }
-    while let Some(guess) = found.best.state.guesses.last() {
-        let (id, last) = (guess.id(), found.best.state.guesses.len() - 1);
-        if !found.let_go(setting, last) {
-            break;
-        }
-        found.stand_ins.push(id);
-    }
-    Sizes::of(found, limits)
 }
 
 /// The static map as a model artifact has it; its terms have no standard errors of their own.

@@ -28,6 +28,7 @@ mod regions;
 mod rehearsal;
 pub mod search;
 pub mod sheet;
+mod stand_ins;
 pub mod state;
 mod steps;
 pub mod structure;
