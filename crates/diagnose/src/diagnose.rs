@@ -21,6 +21,7 @@ use crate::knocks::{self, Knocks};
 use crate::laws;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::nuisance::MAP_ID;
+use crate::plausible::implausible;
 use crate::question::{Answer, Question};
 use crate::regions::{Place, concentrated};
 use crate::search::{Found, Limits, chance};
@@ -231,7 +232,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         confirm_mass(Knocks::effect(), knocks.mass_kg(), state, &model.domain)
     };
     let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(mass);
-    let (implausible, candidates) = (implausible(&setting, &found), candidates(&found, knocks.is_some()));
+    let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
     let augmented = AugmentedModel::new(state.model.clone(), terms);
@@ -458,37 +459,4 @@ fn structured(setting: &Setting<'_>, state: &crate::state::State, found: &Found,
     }
     places.sort_by(|left, right| right.0.total_cmp(&left.0));
     places.into_iter().map(|(_, place)| place).collect()
-}
-
-/// Base parameters outside what is plausible, with everything that was named beside them.
-fn implausible(setting: &Setting<'_>, found: &Found) -> Vec<Implausible> {
-    let x = &found.best.state.fit.x;
-    setting
-        .space
-        .free
-        .iter()
-        .enumerate()
-        .filter_map(|(index, free)| {
-            let value = setting.space.value(index, x[index]);
-            let (low, high) = free.ranges(setting.strand_modulus_pa).plausible;
-            let margin = 1e-6 * (high - low);
-            if (low - margin..=high + margin).contains(&value) {
-                return None;
-            }
-            let modulus = free.name() == "strand_modulus";
-            let written = |value: f64| if modulus { 1.0 / value } else { value };
-            Some(Implausible {
-                parameter: free.name().to_owned(),
-                value: written(value),
-                unit: match free.name() {
-                    "k3" => "N",
-                    "strand_modulus" | "c10" | "c01" | "c10 + c01" => "Pa",
-                    _ => "1",
-                }
-                .to_owned(),
-                plausible: if modulus { [written(high), written(low)] } else { [low, high] },
-                likely_cause: free.likely_cause(value > high).to_owned(),
-            })
-        })
-        .collect()
 }

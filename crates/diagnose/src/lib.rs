@@ -22,6 +22,7 @@ mod laws;
 pub mod next_experiment;
 pub mod normal;
 pub mod nuisance;
+mod plausible;
 mod protocols;
 pub mod question;
 mod regions;

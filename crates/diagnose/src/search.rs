@@ -9,6 +9,7 @@ use crate::forms::Forms;
 use crate::hypothesis::Guess;
 use crate::joint::HeldOut;
 use crate::nuisance::Nuisance;
+use crate::plausible::strains;
 use crate::state::{Setting, State};
 use crate::structure::{Feature, Remainder, Structure, features, telling_force_n};
 use crate::trial::{self, Shapes, Trial};
@@ -167,8 +168,12 @@ pub fn search(
             let gained = before.mean_square() - trial.held_out.mean_square();
             floor_square = floor_square.min((best.held_out.mean_square() - gained).max(trial.held_out.mean_square()));
         }
-        let chosen = tried.iter().find(|tried| worth(tried, &best, &whole, floor_square, limits));
-        let Some(next) = chosen.and_then(|chosen| settle(&mapped, &best, &chosen.trial)) else { break };
+        let next = tried
+            .iter()
+            .filter(|tried| worth(tried, &best, &whole, floor_square, limits))
+            .filter_map(|chosen| settle(&mapped, &best, &chosen.trial))
+            .find(|next| !is_strained(&mapped, next, &base));
+        let Some(next) = next else { break };
         beside = Beside::of(setting, &of_recordings, &coordinates, &next)?;
         let mapped = setting.beside(&beside.smooth);
         best = again(&mapped, &next)?;
@@ -181,7 +186,7 @@ pub fn search(
     let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
     let mut parsimonious = Vec::new();
     while best.state.guesses.len() < limits.max_effects {
-        let Some(next) = look.static_effect(&best, floor_square) else { break };
+        let Some(next) = look.static_effect(&best, &base, floor_square) else { break };
         parsimonious.push(next.state.guesses[next.state.guesses.len() - 1].id());
         best = next;
     }
@@ -351,7 +356,7 @@ impl Look<'_> {
     }
 
     /// `best` with the static effect that stands for the static map, if there is one.
-    fn static_effect(&self, best: &Judged, floor_square: f64) -> Option<Judged> {
+    fn static_effect(&self, best: &Judged, base: &Judged, floor_square: f64) -> Option<Judged> {
         // What is left of an effect that was named is none of the map's.
         let forms = Forms::of(self.mapped, &best.state, self.coordinates);
         let [formed, formed_map] =
@@ -366,13 +371,19 @@ impl Look<'_> {
         }
         let statics = |id: &str| self.allows(id) && effect(id).is_some_and(|effect| effect.is_static());
         let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &statics);
-        let chosen = trials.into_iter().find(|trial| {
+        let stands = |trial: &&Trial| {
             let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
             gained > OF_THE_MAP * map && trial.log_ratio > LEAST_LOG_RATIO
-        })?;
-        let named = settle(&beside, &bare, &chosen)?;
-        again(self.mapped, &named)
+        };
+        let mut named = trials.iter().filter(stands).filter_map(|trial| settle(&beside, &bare, trial));
+        again(self.mapped, &named.find(|named| !is_strained(&beside, named, base))?)
     }
+}
+
+/// Whether the last effect of `next`, a static one, strains the base as nothing did before.
+fn is_strained(setting: &Setting<'_>, next: &Judged, base: &Judged) -> bool {
+    let is_static = next.state.guesses.last().is_some_and(|guess| guess.effect.is_static());
+    is_static && strains(setting, &next.state, &base.state)
 }
 
 /// The trials that come anywhere near the best: what may stand in the place of what was taken.
