@@ -1,7 +1,7 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::{CATALOGUE, Effect, Kind, Seen, effect};
+use pam_core::effects::{CATALOGUE, Effect, Kind, Role, Seen, effect};
 use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;
@@ -380,10 +380,11 @@ impl Look<'_> {
     }
 }
 
-/// Whether the last effect of `next`, a static one, strains the base as nothing did before.
+/// Whether the last effect of `next`, a static one, strains the base as nothing did before. What changes the reading of a force
+/// alone takes nothing of the base's: where the muscle hangs slack, eq. 11 is asked nothing any more.
 fn is_strained(setting: &Setting<'_>, next: &Judged, base: &Judged) -> bool {
-    let is_static = next.state.guesses.last().is_some_and(|guess| guess.effect.is_static());
-    is_static && strains(setting, &next.state, &base.state)
+    let pulls = |guess: &Guess| guess.effect.is_static() && guess.effect.role() != Role::Reads;
+    next.state.guesses.last().is_some_and(pulls) && strains(setting, &next.state, &base.state)
 }
 
 /// The trials that come anywhere near the best: what may stand in the place of what was taken.
