@@ -172,7 +172,7 @@ impl Outputs {
             let actuator = mujoco::Actuator::of(model, grid)?;
             let [rms_n, most_n] = actuator.error_n;
             console.note(format!(
-                "{}: an actuator affine in length, {rms_n:.1} N (RMS) and at most {most_n:.1} N from the settled force",
+                "{}: actuator and springs are {rms_n:.1} N (RMS) and at most {most_n:.1} N from the settled force",
                 path.display()
             ));
             let settling = export.settling(&["viscous-damping", "pressure-lag"]);
