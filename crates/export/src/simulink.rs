@@ -26,7 +26,8 @@ pub fn script(
     without: &[&str],
 ) -> Result<String, ExportError> {
     let prefix = crate::c::prefix(path)?;
-    let name = if prefix.ends_with("table_") { prefix.trim_end_matches('_').to_owned() } else { format!("{prefix}table") };
+    let name =
+        if prefix.ends_with("table_") { prefix.trim_end_matches('_').to_owned() } else { format!("{prefix}table") };
     let mut text =
         "% Settled force of a pneumatic muscle over pressure, length and direction of motion, in SI.\n%\n".to_owned();
     for line in origin {

@@ -22,7 +22,7 @@ typedef struct {
     pam_state state;
     pam_state causal_state;
     pam_observer observer;
-    long n;
+    long n, n_turned;
     double largest_n, causal_square_sum;
 } checked;
 
@@ -49,6 +49,7 @@ static void check(checked *c, const double *row)
         c->largest_n = difference_n;
     }
     now = pam_observe(&c->observer, row[1], row[2], row[4]);
+    c->n_turned += fabs(now.direction - row[9]) > 0.5;
     now.force_n = pam_own_force_n(&c->causal_state, &now);
     difference_n = pam_step(&c->causal_state, &now) - row[14];
     c->causal_square_sum += difference_n * difference_n;
@@ -104,8 +105,9 @@ int main(int argc, char **argv)
     failed = !(c.largest_n <= 1e-9);
     printf("force: %ld instants, largest difference %.3g N: %s\n", c.n, c.largest_n, failed ? "FAILED" : "ok");
     if (argc > 1) {
-        printf("kinematics by pam_observe, without the future: RMS difference %.3f N\n",
-               sqrt(c.causal_square_sum / (double)(c.n ? c.n : 1)));
+        const double n = (double)(c.n ? c.n : 1);
+        printf("kinematics by pam_observe, without the future: RMS difference %.3f N, direction another at %.1f %%\n",
+               sqrt(c.causal_square_sum / n), 100.0 * (double)c.n_turned / n);
     }
 @INVERSE_MAIN@
     return failed;

@@ -86,7 +86,13 @@ static inline void pam_restart_still(pam_observer *o, double contraction_m)
     o->resting = 0;
 }
 
-/* State of friction at a contraction: it turns over within PAM_TURN_M once the length has turned back. */
+/* Lets friction turn over within PAM_TURN_M of travel. */
+static inline void pam_turn(pam_observer *o, double travel_m)
+{
+    o->state = PAM_TURN_M > 0.0 ? fmin(fmax(o->state + 2.0 * o->sign * travel_m / PAM_TURN_M, -1.0), 1.0) : o->sign;
+}
+
+/* State of friction at a contraction: it turns over once the length has turned back. */
 static inline void pam_direction_follow(pam_observer *o, double contraction_m)
 {
     const double back_m = o->sign * (o->farthest_m - contraction_m);
@@ -108,12 +114,12 @@ static inline void pam_direction_follow(pam_observer *o, double contraction_m)
         o->farthest_m = contraction_m;
     }
     if (travel_m > 0.0) {
-        o->state = PAM_TURN_M > 0.0 ? fmin(fmax(o->state + 2.0 * o->sign * travel_m / PAM_TURN_M, -1.0), 1.0) : o->sign;
+        pam_turn(o, travel_m);
     }
 }
 
-/* The instant `step_s` after the one before at a gauge pressure and a length. A `step_s` of 0 begins anew: friction is unknown
-   then, until the first motion. `force_n` is what effects see of the force: measured, or pam_own_force_n. */
+/* The instant `step_s` after the one before at a gauge pressure and a length. A `step_s` of 0 begins anew, as after a gap:
+   friction is unknown then, until the first motion. Add the length of the gap to the observer's time_s before. */
 static inline pam_moment pam_observe(pam_observer *o, double step_s, double pressure_pa, double length_m)
 {
     pam_moment now = {0};
@@ -145,6 +151,7 @@ static inline pam_moment pam_observe(pam_observer *o, double step_s, double pres
         if (o->resting) {
             o->sign = contraction_m < o->still_high_m ? -1.0 : 1.0;
             o->farthest_m = contraction_m;
+            pam_turn(o, PAM_TURN_THRESHOLD_M);
         }
         pam_restart_still(o, contraction_m);
     } else {
