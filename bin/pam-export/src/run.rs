@@ -43,8 +43,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     Ok(Verdict::Accepted)
 }
 
+/// A line for the top of a file; a line break in a path would end its comment.
 fn of_file(input: &Input) -> String {
-    format!("Written by pam-export {} from {} (SHA-256 {}).", env!("CARGO_PKG_VERSION"), input.path, input.sha256)
+    let path: String = input.path.chars().map(|letter| if letter.is_control() { '?' } else { letter }).collect();
+    format!("Written by pam-export {} from {path} (SHA-256 {}).", env!("CARGO_PKG_VERSION"), input.sha256)
 }
 
 /// The model with the effects that are wanted, without events.
