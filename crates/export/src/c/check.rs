@@ -34,13 +34,11 @@ pub fn check_program(
     let (check, main) = match inverse {
         Some(network) => {
             let rows = rows(inverse_vectors(network).into_iter());
-            (names.put_into(CHECK_INVERSE).replace("@VECTORS@", &rows), "    failed |= check_inverse();")
+            (names.put_into(CHECK_INVERSE).replace("@VECTORS@", &rows), "    failed |= check_inverse();\n")
         }
         None => (String::new(), ""),
     };
-    Ok(text
-        .replace("@INVERSE_CHECK@\n", &check)
-        .replace("@INVERSE_MAIN@\n", &if main.is_empty() { String::new() } else { format!("{main}\n") }))
+    Ok(text.replace("@INVERSE_CHECK@\n", &check).replace("@INVERSE_MAIN@\n", main))
 }
 
 fn rows<const N: usize>(rows: impl Iterator<Item = [f64; N]>) -> String {

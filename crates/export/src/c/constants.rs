@@ -19,7 +19,7 @@ pub(super) fn number(value: f64) -> String {
         return "NAN".to_owned();
     }
     let text = format!("{value:?}");
-    if value < 0.0 { format!("({text})") } else { text }
+    if value.is_sign_negative() { format!("({text})") } else { text }
 }
 
 /// Lines of `#define` for the names without their prefix.

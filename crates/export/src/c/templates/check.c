@@ -106,7 +106,7 @@ int main(int argc, char **argv)
     printf("force: %ld instants, largest difference %.3g N: %s\n", c.n, c.largest_n, failed ? "FAILED" : "ok");
     if (argc > 1) {
         const double n = (double)(c.n ? c.n : 1);
-        printf("kinematics by pam_observe, without the future: RMS difference %.3f N, direction another at %.1f %%\n",
+        printf("kinematics by pam_observe, without the future: RMS difference %.3f N, direction differs at %.1f %%\n",
                sqrt(c.causal_square_sum / n), 100.0 * (double)c.n_turned / n);
     }
 @INVERSE_MAIN@
