@@ -69,11 +69,11 @@ fn stuck(channel: &ChannelQuality) -> String {
 /// What friction does where no motion tells its direction, with what the second best law leaves; none where one was assumed.
 pub(crate) fn friction(artifact: &ModelArtifact) -> Option<String> {
     let [best, second, ..] = artifact.standstill_laws.as_slice() else { return None };
-    let turn_um = artifact.direction.turn_m * 1e6;
-    let turns = if turn_um > 0.0 {
-        format!("within {turn_um:.0} µm of travel after a reversal")
-    } else {
-        "at once after a reversal".to_owned()
+    let [held_um, turn_um] = [artifact.direction.held_m, artifact.direction.turn_m].map(|travel_m| travel_m * 1e6);
+    let turns = match (held_um > 0.0, turn_um > 0.0) {
+        (false, false) => "at once after a reversal".to_owned(),
+        (true, false) => format!("{held_um:.0} µm after a reversal"),
+        (_, true) => format!("between {held_um:.0} and {:.0} µm after a reversal", held_um + turn_um),
     };
     Some(format!(
         "{}, and turns over {turns}; eq. 11 with free weights then leaves {:.3} N, and {:.3} N where {}",

@@ -281,7 +281,7 @@ mod tests {
     use std::fmt::Write as _;
 
     const THRESHOLDS: Thresholds =
-        Thresholds { length_m: 1.5e-4, pressure_pa: 2.5e3, turn_m: 0.0, standstill: Standstill::AT_ONCE };
+        Thresholds { length_m: 1.5e-4, pressure_pa: 2.5e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::AT_ONCE };
 
     fn base() -> ForceModel {
         ForceModel::new(&nominal(), 3e9, Form::Corrected, BaseParameters { theta: [0.0; 8] })

@@ -185,8 +185,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         found = veto::confirmed(&question, &track, found, &held);
         sizes = Sizes::of(&found, &question.limits);
     }
+    let nuisance = found.nuisance.clone();
+    let setting = question.setting(&track, &nuisance);
+    if knocks.is_none() {
+        sizes = without_stand_ins(&setting, &mut found, sizes, &question.limits);
+    }
     given.beside_effects(&question, &track, &found);
-    let setting = question.setting(&track, &found.nuisance);
     let space = &question.space;
     observer(steps - 1, steps);
     let state = &found.best.state;
@@ -253,6 +257,21 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         config,
     };
     Ok(diagnosis)
+}
+
+/// Lets go of what was taken where it leaves far more than it explains: the nearest names of something that has none.
+fn without_stand_ins(setting: &Setting<'_>, found: &mut Found, sizes: Sizes, limits: &Limits) -> Sizes {
+    if verdict(found, &sizes, false) != Verdict::Unexplained || !sizes.most_is_left() {
+        return sizes;
+    }
+    while let Some(guess) = found.best.state.guesses.last() {
+        let (id, last) = (guess.id(), found.best.state.guesses.len() - 1);
+        if !found.let_go(setting, last) {
+            break;
+        }
+        found.stand_ins.push(id);
+    }
+    Sizes::of(found, limits)
 }
 
 /// The static map as a model artifact has it; its terms have no standard errors of their own.
@@ -366,6 +385,8 @@ fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
                 "named".to_owned()
             } else if rivals.contains(&id) {
                 "cannot be told from what was named".to_owned()
+            } else if found.stand_ins.contains(&id) {
+                "gains something, and leaves far more than it explains".to_owned()
             } else if explains < 0.02 {
                 "explains nothing".to_owned()
             } else if taken.is_empty() {

@@ -45,7 +45,7 @@ static TYPICAL: [Typical; 22] = [
     // 1 N per hour and 2 N.
     Typical { id: "force-drift", shapes: &[&[120.0]], amplitudes: &[1.0 / 3600.0, 2.0] },
     // 100 N/mm.
-    Typical { id: "series-compliance", shapes: &[&[1e-5]], amplitudes: &[] },
+    Typical { id: "series-compliance", shapes: &[&[1e-5, 1.0]], amplitudes: &[] },
     Typical { id: "inertia", shapes: &[&[25.0]], amplitudes: &[0.5] },
     Typical { id: "slack", shapes: &[&[0.0, 0.0]], amplitudes: &[] },
     Typical { id: "pressure-lag", shapes: &[&[0.06]], amplitudes: &[] },

@@ -61,6 +61,23 @@ pub struct Found {
     pub left: Option<Structure>,
     /// What was in beside base and effects.
     pub nuisance: Nuisance,
+    /// Ids of what was taken and let go of again, as more is left than it explains.
+    pub stand_ins: Vec<&'static str>,
+}
+
+impl Found {
+    /// Lets go of effect `index`; `setting` has the nuisances that were in. False where the rest determines no fit.
+    pub(crate) fn let_go(&mut self, setting: &Setting<'_>, index: usize) -> bool {
+        let rest = setting.fit_without(&self.best.state, index).and_then(|state| judged(setting, state));
+        let Some(rest) = rest else { return false };
+        self.best = rest;
+        if index < self.taken.len() {
+            self.taken.remove(index);
+        }
+        let every: Vec<&Feature> = self.features.iter().collect();
+        self.left = Remainder::of(setting, &self.best.state).structure(&every);
+        true
+    }
 }
 
 /// An effect that was taken.
@@ -188,7 +205,19 @@ pub fn search(
     if let Some(left) = &left {
         floor_square = floor_square.min(left.held_out.mean_square());
     }
-    Some(Found { base, whole, best, taken, first, coordinates, features, floor_square, left, nuisance })
+    Some(Found {
+        base,
+        whole,
+        best,
+        taken,
+        first,
+        coordinates,
+        features,
+        floor_square,
+        left,
+        nuisance,
+        stand_ins: Vec::new(),
+    })
 }
 
 /// What a hypothesis is judged beside.

@@ -87,12 +87,13 @@ impl Ground<'_> {
         let mut last = None;
         for (((now, row), here), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width)).zip(base).zip(range) {
             let wanted = self.only.is_none_or(|only| only[at]);
+            for memory in &mut memories {
+                memory.sees(now);
+            }
             let mut slide = now.direction;
             for (guess, memory) in guesses.iter().zip(&mut memories) {
-                match guess.effect.role() {
-                    Role::Sees => memory.sees(now),
-                    Role::Slides => slide = memory.slides(now),
-                    Role::Shift | Role::Pulls | Role::Reads => {}
+                if guess.effect.role() == Role::Slides {
+                    slide = memory.slides(now);
                 }
             }
             if wanted {

@@ -32,6 +32,8 @@ const CONSISTENT_WITHIN: f64 = 2.5;
 const MOST_LEFT: f64 = 0.3;
 /// The same of what matters by itself: less is what the form of an effect that is otherwise right leaves of it.
 const LEAST_LEFT: f64 = 0.08;
+/// The same beyond which what explains the rest is no explanation: twice as much is left.
+const MOST: f64 = 2.0 / 3.0;
 /// The same for an effect that the catalogue says it is confused with.
 const DECLARED_RIVAL: f64 = 0.6;
 /// A rival that reaches this share of the evidence cannot be told from what was named.
@@ -61,6 +63,11 @@ impl Sizes {
     /// The same where `knocks` were explained besides.
     pub fn with(self, knocks: &Knocks) -> Self {
         Self { mismatch_n: self.mismatch_n.hypot(knocks.all_rows_n), ..self }
+    }
+
+    /// Whether far more of the mismatch is left than was explained.
+    pub fn most_is_left(&self) -> bool {
+        self.share_left() > MOST
     }
 
     /// Share of the mismatch that is left, in mean squares.

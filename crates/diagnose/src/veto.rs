@@ -11,9 +11,8 @@ use pam_core::shift::shifted;
 use crate::coordinates::Coordinates;
 use crate::nuisance::Nuisance;
 use crate::question::Question;
-use crate::search::{Found, judged};
+use crate::search::Found;
 use crate::state::{Setting, State};
-use crate::structure::{Feature, Remainder};
 use crate::track::Track;
 use crate::uncertainty::correlated_instants;
 
@@ -34,15 +33,9 @@ pub(crate) fn confirmed(question: &Question<'_>, track: &Track, mut found: Found
         .with_map(heldout, &coordinates);
     let held = question.setting(heldout, &beside);
     while let Some(index) = denied(&held, &found) {
-        let Some(rest) = setting.fit_without(&found.best.state, index).and_then(|state| judged(&setting, state)) else {
+        if !found.let_go(&setting, index) {
             break;
-        };
-        found.best = rest;
-        if index < found.taken.len() {
-            found.taken.remove(index);
         }
-        let every: Vec<&Feature> = found.features.iter().collect();
-        found.left = Remainder::of(&setting, &found.best.state).structure(&every);
     }
     found
 }

@@ -200,6 +200,7 @@ impl Checked {
         let validation = self.gates.split_off(self.n_estimation);
         let from_noise = thresholds(&self.gates, &self.muscle.muscle);
         let thresholds = Thresholds {
+            held_m: 0.0,
             turn_m: 0.0,
             standstill: from_noise.standstill,
             length_m: self.length_play_m.unwrap_or(from_noise.length_m),
@@ -213,7 +214,7 @@ impl Checked {
         let laws = self.judge_standstill(&estimation, &columns, thresholds)?;
         let mut thresholds = Thresholds { standstill: laws[0].standstill, ..thresholds };
         if self.form == Form::Corrected {
-            thresholds.turn_m = standstill::turn_m(&estimation, &columns, thresholds)?;
+            thresholds = standstill::turning(&estimation, &columns, thresholds)?;
         }
         redirect(&mut estimation, thresholds, self.form)?;
         let mut validation = direct(validation, thresholds, self.form)?;

@@ -80,6 +80,7 @@ pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
     Thresholds {
         length_m: worst("length").max(1e-4 * muscle.rest_length_m),
         pressure_pa: worst("pressure").max(1e-3 * highest_pa),
+        held_m: 0.0,
         turn_m: 0.0,
         standstill: Standstill::AT_ONCE,
     }

@@ -20,11 +20,16 @@ use crate::prepare::Prepared;
 /// Pressures over which friction may turn over, in Pa; nothing for any change that is not noise.
 const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 
-/// Travels in which friction may turn over, in m. What takes longer is pre-sliding, an effect with a name.
-const TURNS_M: [f64; 5] = [0.0, 1.5e-5, 3e-5, 6e-5, 1e-4];
+/// Travels over which friction may keep its sign after a reversal, and in which it may turn over behind that, in m. What takes
+/// longer is pre-sliding, an effect with a name.
+const HELD_M: [f64; 6] = [0.0, 1e-5, 1.5e-5, 2e-5, 3e-5, 4.5e-5];
+/// See [`HELD_M`].
+const TURNS_M: [f64; 4] = [0.0, 2e-5, 5e-5, 1e-4];
 
 /// Rows that the laws are compared on, at most.
 const MOST_ROWS: usize = 60_000;
+/// Rows that travels are compared on, at most, the first of every recording: they show around reversals, at the full rate.
+const TURNING_ROWS: usize = 200_000;
 
 /// Share of the mean square that a law must gain over friction that follows the pressure at once.
 const CLEARLY: f64 = 0.01;
@@ -47,7 +52,8 @@ pub fn judge(
     let judged: Result<Vec<StandstillFit>, IdentifyError> = laws
         .into_par_iter()
         .map(|standstill| {
-            let left = mean_square(recordings, columns, Thresholds { standstill, ..thresholds }, stride)?;
+            let left =
+                mean_square(recordings, columns, Thresholds { standstill, ..thresholds }, Counts::Settled(stride))?;
             Ok(StandstillFit { standstill, rmse_n: left.sqrt() })
         })
         .collect();
@@ -63,21 +69,29 @@ pub fn judge(
     Ok(judged)
 }
 
-/// The travel in which friction turns over after a reversal, in m: the one of [`TURNS_M`] that leaves least of the force; 0
-/// where nothing is clearly gained.
+/// `thresholds` with the travels in which friction turns over after a reversal: those of [`HELD_M`] and [`TURNS_M`] that leave
+/// least of the force; none where nothing is clearly gained.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
-pub fn turn_m(recordings: &[Prepared], columns: &ForceColumns, thresholds: Thresholds) -> Result<f64, IdentifyError> {
-    let stride = stride(recordings);
-    let judged: Result<Vec<(f64, f64)>, IdentifyError> = TURNS_M
+pub fn turning(
+    recordings: &[Prepared],
+    columns: &ForceColumns,
+    thresholds: Thresholds,
+) -> Result<Thresholds, IdentifyError> {
+    let first = TURNING_ROWS / recordings.len().max(1);
+    let travels: Vec<Thresholds> = HELD_M
+        .into_iter()
+        .flat_map(|held_m| TURNS_M.map(|turn_m| Thresholds { held_m, turn_m, ..thresholds }))
+        .collect();
+    let judged: Result<Vec<(f64, Thresholds)>, IdentifyError> = travels
         .into_par_iter()
-        .map(|turn_m| Ok((mean_square(recordings, columns, Thresholds { turn_m, ..thresholds }, stride)?, turn_m)))
+        .map(|travels| Ok((mean_square(recordings, columns, travels, Counts::First(first))?, travels)))
         .collect();
     let judged = judged?;
     let most = (1.0 - HARDLY) * judged[0].0;
     let best = judged.into_iter().filter(|(left, _)| *left < most).min_by(|one, other| one.0.total_cmp(&other.0));
-    Ok(best.map_or(0.0, |(_, turn_m)| turn_m))
+    Ok(best.map_or(thresholds, |(_, travels)| travels))
 }
 
 /// Every how many rows are looked at.
@@ -86,16 +100,25 @@ fn stride(recordings: &[Prepared]) -> usize {
     n_rows.div_ceil(MOST_ROWS).max(1)
 }
 
+/// Which rows a law is judged by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Counts {
+    /// Every so many of those whose direction is settled, and of those before the first motion.
+    Settled(usize),
+    /// So many, but for what was left out of every fit: how friction turns over shows around reversals alone.
+    First(usize),
+}
+
 /// What the columns leave of the force under `thresholds`, in N².
 fn mean_square(
     recordings: &[Prepared],
     columns: &ForceColumns,
     thresholds: Thresholds,
-    stride: usize,
+    counts: Counts,
 ) -> Result<f64, IdentifyError> {
     let mut total = Summary::new(N_COLUMNS);
     for prepared in recordings {
-        let part = condensed(prepared, columns, thresholds, stride)
+        let part = condensed(prepared, columns, thresholds, counts)
             .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
         total.merge(&part);
     }
@@ -106,23 +129,32 @@ fn condensed(
     prepared: &Prepared,
     columns: &ForceColumns,
     thresholds: Thresholds,
-    stride: usize,
+    counts: Counts,
 ) -> io::Result<Summary> {
     debug_assert_eq!(columns.form(), Form::Corrected);
-    let direction = Direction::of(&prepared.recording, thresholds, Driver::Motion)?;
+    let n_rows = prepared.recording.samples.n_rows();
+    let (stride, n_rows) = match counts {
+        Counts::Settled(stride) => (stride, n_rows),
+        Counts::First(first) => (1, first.min(n_rows)),
+    };
+    let direction = Direction::of_first(n_rows, &prepared.recording, thresholds, Driver::Motion)?;
+    let mut left_out = vec![false; n_rows];
+    for rows in prepared.direction.left_out() {
+        left_out[rows.start.min(n_rows)..rows.end.min(n_rows)].fill(true);
+    }
     let width = N_COLUMNS + 1;
     let mut summary = Summary::new(N_COLUMNS);
     let mut block = vec![0.0; BLOCK_ROWS * width];
     let mut filled = 0;
     let samples = &prepared.recording.samples;
     let mut row = 0;
-    while row < samples.n_rows() {
+    while row < n_rows {
         let chunk = samples.chunk(row / CHUNK_ROWS)?;
-        while row < chunk.first_row() + chunk.n_rows() {
+        while row < n_rows.min(chunk.first_row() + chunk.n_rows()) {
             let here = row - chunk.first_row();
-            // What was left out of every fit, a spike say, is left out here.
-            let counts = |direction: &Direction| direction.is_settled(row) || !direction.is_known(row);
-            if counts(&direction) && counts(&prepared.direction) {
+            let settled = |direction: &Direction| direction.is_settled(row) || !direction.is_known(row);
+            let counts = matches!(counts, Counts::First(_)) || settled(&direction) && settled(&prepared.direction);
+            if counts && !left_out[row] {
                 let values = columns.row(chunk.pressure_pa()[here], chunk.length_m()[here], direction.sign(row));
                 let force_n = chunk.force_n()[here];
                 if force_n.is_finite() && values.iter().all(|value| value.is_finite()) {

@@ -6,7 +6,7 @@ use pam_core::muscle::Muscle;
 
 /// Thresholds of a clean recording.
 pub(crate) const THRESHOLDS: Thresholds =
-    Thresholds { length_m: 1e-4, pressure_pa: 1e3, turn_m: 0.0, standstill: Standstill::AT_ONCE };
+    Thresholds { length_m: 1e-4, pressure_pa: 1e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::AT_ONCE };
 
 /// The muscle of the paper with round parameters.
 pub(crate) fn model() -> ForceModel {

@@ -514,6 +514,7 @@ mod tests {
             direction: Thresholds {
                 length_m: 150e-6,
                 pressure_pa: 2.5e3,
+                held_m: 0.0,
                 turn_m: 0.0,
                 standstill: Standstill::AT_ONCE,
             },
@@ -619,7 +620,8 @@ mod tests {
     #[test]
     fn a_direction_that_flips_before_it_turns_is_refused() {
         let mut turned = artifact(vec![]);
-        turned.direction = Thresholds { length_m: 0.0, pressure_pa: 0.0, turn_m: 0.0, standstill: Standstill::Held };
+        turned.direction =
+            Thresholds { length_m: 0.0, pressure_pa: 0.0, held_m: 0.0, turn_m: 0.0, standstill: Standstill::Held };
         turned.check().expect("no threshold is one");
         turned.direction.length_m = -1.0;
         assert_eq!(turned.check(), Err("a threshold of the direction is negative: -1 m, 0 Pa".to_owned()));

@@ -8,8 +8,9 @@
 //! samples, as little as those of a sensor that is out of its range.
 //!
 //! A turn is the vertex of the parabola or the corner of the two lines that describe the length around it, whichever leaves
-//! less: the play alone notices it a threshold late. Behind it friction goes from one sign to the other within a travel of
-//! some tens of micrometers ([`Thresholds::turn_m`]), which no strand is without.
+//! less: the play alone notices it a threshold late. Behind it friction keeps its sign over some tens of micrometers
+//! ([`Thresholds::held_m`], the play of joints and strands) and goes to the other one within some more
+//! ([`Thresholds::turn_m`], their give): what the recordings say.
 //!
 //! What friction does where the length stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
 //! keeps its last sign, or the strands slide under rising (+1, as if contracting) and falling pressure (-1), at once or only
@@ -30,6 +31,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::recording::{CHUNK_ROWS, Chunk, Recording};
 
+mod rest;
 mod states;
 mod turn;
 
@@ -77,7 +79,10 @@ pub struct Thresholds {
     pub length_m: f64,
     /// Likewise for the pressure, where the length stands still, in Pa.
     pub pressure_pa: f64,
-    /// Travel in which friction turns over after a reversal, in m; models that do not say turn over at once.
+    /// Travel back from a reversal over which friction keeps its sign, in m; models that do not say keep it over none.
+    #[serde(default)]
+    pub held_m: f64,
+    /// Travel behind that in which friction turns over, in m; models that do not say turn over at once.
     #[serde(default)]
     pub turn_m: f64,
     /// What friction does while the length stands still; models that do not say follow the pressure at once.
@@ -106,6 +111,8 @@ pub struct Direction {
     settled: Vec<bool>,
     /// Whether the direction is known at all: some motion came before it in its segment.
     known: Vec<bool>,
+    /// Rows that no fit counts for another reason.
+    left_out: Vec<Range<usize>>,
 }
 
 /// Beginnings that are tried on either side of zero.
@@ -119,13 +126,22 @@ impl Direction {
     /// # Errors
     /// Where the samples cannot be read back.
     pub fn of(recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
-        let n_rows = recording.samples.n_rows();
+        Self::of_first(recording.samples.n_rows(), recording, thresholds, driver)
+    }
+
+    /// Directions of the first `n_rows` of `recording`.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of_first(n_rows: usize, recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
         let mut all = Self {
             states: Vec::with_capacity(n_rows),
             settled: Vec::with_capacity(n_rows),
             known: Vec::with_capacity(n_rows),
+            left_out: Vec::new(),
         };
         for segment in &recording.segments {
+            let segment = segment.start.min(n_rows)..segment.end.min(n_rows);
             let mut carried = Bounds::UNKNOWN;
             let first = all.states.len();
             for start in segment.clone().step_by(STRETCH_ROWS) {
@@ -226,7 +242,13 @@ impl Direction {
     /// # Panics
     /// Where there are not that many rows.
     pub fn leave_out(&mut self, rows: Range<usize>) {
-        self.settled[rows].fill(false);
+        self.settled[rows.clone()].fill(false);
+        self.left_out.push(rows);
+    }
+
+    /// Rows that were left out, in no order.
+    pub fn left_out(&self) -> &[Range<usize>] {
+        &self.left_out
     }
 
     /// Rows whose direction is not certain or that were left out.

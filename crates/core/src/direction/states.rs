@@ -3,8 +3,10 @@
 
 use std::ops::Range;
 
+use super::rest::{pushed, standstills};
 use super::turn::{NOISE, Turn};
 use super::{Driver, Standstill, Thresholds};
+use crate::smoothing::Window;
 
 /// Length of the moving average, in s; at least five samples and at most 101 are averaged.
 pub const WINDOW_S: f64 = 0.05;
@@ -79,11 +81,17 @@ pub(super) fn states_of(
     play(&contraction, &shortening, thresholds.length_m, half, carried.sign(), &mut marks);
     let pressure = moving_average(pressure_pa, half);
     let resting = standstills(time_s, &contraction, thresholds.length_m);
-    let moved = |still: &&Range<usize>| range(&pressure[(*still).clone()]) > thresholds.pressure_pa;
-    let pushed: Vec<Range<usize>> = resting.iter().filter(moved).cloned().collect();
+    // Deviation of an average of the length at rest.
+    let noise_m = NOISE * thresholds.length_m / ((2 * half + 1) as f64).sqrt();
+    let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
+    let pushed: Vec<Range<usize>> = (0..resting.len()).filter_map(push).collect();
     if let Standstill::Slides { over_pa } = thresholds.standstill
         && over_pa <= 2.0 * thresholds.pressure_pa
     {
+        let rest_of = |pushed: &Range<usize>| {
+            let still = resting.iter().find(|still| still.contains(&pushed.start));
+            still.map_or(0, |still| still.end - pushed.end)
+        };
         // A standstill in which the pressure rests as well keeps what the length says.
         for still in &pushed {
             let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried.sign() };
@@ -91,7 +99,12 @@ pub(super) fn states_of(
             marks[still.clone()].fill(0);
             play(smooth, raw, thresholds.pressure_pa, half, before, &mut marks[still.clone()]);
             let last = marks[still.end - 1].signum();
-            marks[still.end..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
+            let behind = &mut marks[still.end..];
+            // Until the length turns, or moves at all, friction is what the pressure has made of it.
+            let turn = behind.iter().position(|mark| mark.signum() != before).unwrap_or(behind.len());
+            let turn = if turn < rest_of(still) + 2 * half { turn } else { 0 };
+            behind[..turn].fill(last);
+            behind[turn..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
         }
     }
     let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
@@ -108,42 +121,100 @@ pub(super) fn states_of(
             states[still.end..still.end + unmoved].fill(after);
         }
     }
-    if thresholds.turn_m > 0.0 {
+    if thresholds.held_m > 0.0 || thresholds.turn_m > 0.0 {
         let pushed = if thresholds.standstill == Standstill::Held { &[][..] } else { &pushed };
-        turn_over(&contraction, thresholds.turn_m, carried, pushed, &mut states);
+        let path = path(time_s, &shortening, thresholds);
+        turn_over(&path, thresholds, slow.long, carried, pushed, &mut states);
     }
     states
 }
 
-/// Lets the states follow the travel of the smooth `contraction`, from where they are to the sign of the motion within
-/// `turn_m`; over the stretches `pushed` the pressure moves it.
-fn turn_over(contraction: &[f64], turn_m: f64, carried: Bounds, pushed: &[Range<usize>], states: &mut [State]) {
-    let mut pushed = pushed.iter().peekable();
+/// Deviation that is left in the path that friction turns over on, in m, where the window allows: less than strands give.
+const PATH_M: f64 = 4e-6;
+/// Longest half of that window, in s: half a period of what a muscle does.
+const PATH_S: f64 = 0.15;
+
+/// `shortening` as parabolas describe it, over windows as long as its noise needs.
+fn path(time_s: &[f64], shortening: &[f64], thresholds: Thresholds) -> Vec<f64> {
+    let period_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
+    // A parabola over n values leaves 2.25 / n of the variance in the middle one.
+    let n = 2.25 * (NOISE * thresholds.length_m / PATH_M).powi(2);
+    let window = Window::over(time_s, (0.5 * n * period_s).min(PATH_S));
+    (0..shortening.len()).map(|row| window.parabola(shortening, row).value).collect()
+}
+
+/// Lets the states follow the travel along `path` behind every turn, as `thresholds` say; over the stretches `pushed` the
+/// pressure moves them. A turn is where the path is farthest, within `reach` rows of where the sign changes.
+fn turn_over(
+    path: &[f64],
+    thresholds: Thresholds,
+    reach: usize,
+    carried: Bounds,
+    pushed: &[Range<usize>],
+    states: &mut [State],
+) {
+    let mut ways: Vec<i8> = states.iter().map(|state| state.bounds.sign()).collect();
+    let mut is_pushed = vec![false; states.len()];
+    pushed.iter().for_each(|still| is_pushed[still.clone()].fill(true));
     let mut state = carried.is_known().then(|| carried.middle());
     let mut sign = carried.sign();
-    let mut farthest = contraction[0];
-    for (row, now) in states.iter_mut().enumerate() {
-        if !now.bounds.is_known() {
+    // The last turn, the state there, and the farthest travel from it.
+    let (mut turn, mut at_turn, mut farthest_m) = (0, state, 0.0);
+    let mut row = 0;
+    while row < states.len() {
+        if !states[row].bounds.is_known() {
+            row += 1;
             continue;
         }
-        while pushed.next_if(|still| still.end <= row).is_some() {}
-        if pushed.peek().is_some_and(|still| still.contains(&row)) {
-            state = Some(now.bounds.middle());
-            (sign, farthest) = (0, contraction[row]);
+        if is_pushed[row] {
+            state = Some(states[row].bounds.middle());
+            sign = 0;
+            row += 1;
             continue;
         }
-        let way = now.bounds.sign();
-        if way != sign {
-            (sign, farthest) = (way, contraction[row]);
+        let way = f64::from(ways[row]);
+        if ways[row] != sign {
+            let around = extreme(path, row, reach, way);
+            // What came before the turn still goes the other way, what lies between it and here came this way already.
+            let free = |rows: Range<usize>| rows.into_iter().all(|row| !is_pushed[row] && ways[row] != 0);
+            if sign != 0 && around > row && free(row..around) {
+                ways[row..around].fill(sign);
+                continue;
+            }
+            let back = around.max(turn);
+            let from = if sign != 0 && back < row && free(back..row) { back } else { row };
+            sign = ways[row];
+            ways[from..row].fill(sign);
+            (turn, farthest_m) = (around.min(row), 0.0);
+            at_turn = if from == 0 {
+                state
+            } else if from < row {
+                Some(states[from].bounds.middle())
+            } else {
+                state
+            };
+            row = from;
         }
-        let way = f64::from(way);
-        let travel_m = (way * (contraction[row] - farthest)).max(0.0);
-        farthest += way * travel_m;
+        farthest_m = f64::max(farthest_m, way * (path[row] - path[turn]));
+        let turned_m = (farthest_m - thresholds.held_m).max(0.0);
         // Nothing is known of what came before the first motion.
-        let turned = state.map_or(way, |state| (state + 2.0 * way * travel_m / turn_m).clamp(-1.0, 1.0));
+        let turned = match at_turn {
+            Some(state) if turned_m == 0.0 => state,
+            Some(state) if thresholds.turn_m > 0.0 => {
+                (state + 2.0 * way * turned_m / thresholds.turn_m).clamp(-1.0, 1.0)
+            }
+            _ => way,
+        };
         state = Some(turned);
-        now.bounds = Bounds::at(turned);
+        states[row].bounds = Bounds::at(turned);
+        row += 1;
     }
+}
+
+/// The row within `reach` of `row` from which `path` goes the way of `way`.
+fn extreme(path: &[f64], row: usize, reach: usize, way: f64) -> usize {
+    let around = row.saturating_sub(reach)..path.len().min(row + reach);
+    around.min_by(|&one, &other| (way * path[one]).total_cmp(&(way * path[other]))).unwrap_or(row)
 }
 
 /// What marks say, with `carried` before the first motion.
@@ -212,15 +283,6 @@ impl Slow<'_> {
             }
         }
     }
-}
-
-fn range(values: &[f64]) -> f64 {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for &value in values {
-        low = low.min(value);
-        high = high.max(value);
-    }
-    high - low
 }
 
 /// Centered average over `2 half + 1` values, over fewer and still centered at the ends.
@@ -327,30 +389,6 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
     }
 }
 
-/// Stretches of at least [`STANDSTILL_S`] in which the values stay within half a threshold of where the
-/// stretch began.
-fn standstills(time_s: &[f64], values: &[f64], threshold: f64) -> Vec<Range<usize>> {
-    let mut found = Vec::new();
-    let mut start = 0;
-    let (mut low, mut high) = (values[0], values[0]);
-    for index in 0..=values.len() {
-        if index < values.len() {
-            low = low.min(values[index]);
-            high = high.max(values[index]);
-            if high - low <= threshold {
-                continue;
-            }
-        }
-        if time_s[index - 1] - time_s[start] >= STANDSTILL_S {
-            found.push(start..index);
-        }
-        if index < values.len() {
-            (start, low, high) = (index, values[index], values[index]);
-        }
-    }
-    found
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -358,7 +396,7 @@ mod tests {
     use rand_distr::{Distribution, Normal};
 
     const THRESHOLDS: Thresholds =
-        Thresholds { length_m: 150e-6, pressure_pa: 2e3, turn_m: 0.0, standstill: Standstill::AT_ONCE };
+        Thresholds { length_m: 150e-6, pressure_pa: 2e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::AT_ONCE };
 
     /// ±1, ±2 where unsettled, 0 where unknown.
     fn marks_under(standstill: Standstill, pressure_pa: &[f64], length_m: &[f64]) -> Vec<i8> {
@@ -555,12 +593,63 @@ mod tests {
     fn friction_turns_over_within_its_travel() {
         let n = 4000;
         let length: Vec<f64> = (0..n).map(|at| 0.24 + 1e-5 * (at as f64 - 2000.0).abs()).collect();
-        let thresholds = Thresholds { turn_m: 1e-3, standstill: Standstill::Held, ..THRESHOLDS };
+        let thresholds = Thresholds { length_m: 5e-5, turn_m: 1e-3, standstill: Standstill::Held, ..THRESHOLDS };
         let states = states_of(&times(n), &vec![3e5; n], &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
         let state = |row: usize| states[row].bounds.middle();
         assert!((state(1900) - 1.0).abs() < 1e-9);
         // The average rounds the corner by some tenths of the travel.
         assert!(state(2050).abs() < 0.1, "{}", state(2050));
         assert!((state(2110) + 1.0).abs() < 1e-9, "{}", state(2110));
+    }
+
+    #[test]
+    fn friction_keeps_its_sign_over_a_play_and_a_late_mark_does_not_matter() {
+        let (n, noise) = (4000, noise(4000, 20e-6, 11));
+        let length: Vec<f64> = (0..n).map(|at| 0.24 + 0.005 * (at as f64 / 300.0).cos() + noise[at]).collect();
+        let thresholds = Thresholds { length_m: 1e-4, held_m: 3e-5, standstill: Standstill::Held, ..THRESHOLDS };
+        let states = states_of(&times(n), &vec![3e5; n], &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
+        for turn in 1..4 {
+            let turn_row = (std::f64::consts::PI * f64::from(turn) * 300.0) as usize;
+            // 30 µm from the turn are 33 rows behind it.
+            let flip = (turn_row - 60..turn_row + 120)
+                .find(|&row| states[row].bounds.middle() * states[turn_row - 100].bounds.middle() < 0.0);
+            assert!(flip.is_some_and(|row| row.abs_diff(turn_row + 33) < 15), "{turn_row} {flip:?}");
+        }
+    }
+
+    /// A muscle that comes to rest after 2 s, and the pressure with it; it rests until 4 s and goes on the same way.
+    fn settling(n: usize) -> (Vec<f64>, Vec<f64>) {
+        let noise = noise(n, 8e-6, 5);
+        let done = |at: usize| {
+            let t = (at as f64 / 400.0).min(1.0);
+            t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
+        };
+        let length =
+            (0..n).map(|at| 0.25 + 2e-3 * done(at) + 1e-5 * at.saturating_sub(800) as f64 + noise[at]).collect();
+        let pressure = (0..n).map(|at| 1e5 + 2e5 * done(at)).collect();
+        (pressure, length)
+    }
+
+    #[test]
+    fn a_pressure_that_settles_with_the_length_turns_no_friction() {
+        // Extending under rising pressure: were the end of it a push at rest, friction would turn.
+        let (pressure, length) = settling(1200);
+        let thresholds = Thresholds { length_m: 4e-5, pressure_pa: 700.0, ..THRESHOLDS };
+        let states = states_of(&times(1200), &pressure, &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
+        assert!(states[100..].iter().all(|state| state.bounds.sign() == -1));
+    }
+
+    #[test]
+    fn a_pressure_that_moves_in_half_a_second_of_rest_turns_friction() {
+        let n = 600;
+        let noise = noise(n, 8e-6, 7);
+        let length: Vec<f64> = (0..n)
+            .map(|at| 0.25 + 2e-5 * at.min(200) as f64 + 2e-5 * at.saturating_sub(320) as f64 + noise[at])
+            .collect();
+        let pressure: Vec<f64> = (0..n).map(|at| 1e5 + 1e3 * at.saturating_sub(230).min(60) as f64).collect();
+        let thresholds = Thresholds { length_m: 4e-5, pressure_pa: 700.0, ..THRESHOLDS };
+        let states = states_of(&times(n), &pressure, &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
+        let sign = |row: usize| states[row].bounds.sign();
+        assert_eq!([sign(150), sign(225), sign(260), sign(300), sign(360)], [-1, -1, 1, 1, -1]);
     }
 }

@@ -81,8 +81,17 @@ pub fn noise_std(values: &[f64]) -> f64 {
         }
         mean = kept;
     }
-    (mean / 6.0).sqrt()
+    let noise = (mean / 6.0).sqrt();
+    // White noise is everywhere: where stretches that a cubic describes show far less, the differences were a motion that a
+    // slow clock hardly follows.
+    match quiet_std(values, LEAST_IN_WINDOW) {
+        Some(quiet) if quiet > 0.0 && quiet < MOTION * noise => quiet,
+        _ => noise,
+    }
 }
+
+/// Share of what second differences show below which quiet stretches say that a motion made them.
+const MOTION: f64 = 0.5;
 
 /// Time within which noise is told from a signal, in s: muscles and valves are slower.
 pub const WITHIN_S: f64 = 0.3;
@@ -95,12 +104,18 @@ const QUIET: f64 = 0.2;
 /// Where a standard normal variable has that share below it.
 const QUIET_NORMAL: f64 = -0.8416;
 
-/// Standard deviation of what a cubic leaves within [`WITHIN_S`], in the quietest fifth of the windows, corrected for that
-/// choice as if the noise were white (Wilson and Hilferty's approximation of χ²). None where a window of that length holds
-/// too few values at a `period_s`.
+/// Standard deviation of noise of any color: what a cubic leaves within [`WITHIN_S`], in the quietest fifth of the windows,
+/// corrected for that choice as if the noise were white (Wilson and Hilferty's approximation of χ²). None where a window of
+/// that length holds too few values at a `period_s`.
 pub fn colored_noise_std(values: &[f64], period_s: f64) -> Option<f64> {
     let n = (WITHIN_S / period_s).round() as usize;
-    if n < LEAST_IN_WINDOW || values.len() < n {
+    if n < LEAST_IN_WINDOW { None } else { quiet_std(values, n) }
+}
+
+/// Standard deviation of what a cubic leaves of `n` values in a row, in the quietest fifth of the windows, corrected for that
+/// choice. None where there is no window.
+fn quiet_std(values: &[f64], n: usize) -> Option<f64> {
+    if values.len() < n {
         return None;
     }
     // Orthonormal polynomials over a window.
@@ -240,6 +255,22 @@ mod tests {
             counter.push(if index < 40 { -9.0 } else { f64::from(index % 7) - 1.0 });
         }
         assert_eq!(counter.shares(), (0.4, 0.0));
+    }
+
+    #[test]
+    fn a_motion_that_a_slow_clock_hardly_follows_is_no_noise() {
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(3);
+        let normal = Normal::new(0.0, 2e-5).unwrap();
+        // 25 Hz: 3 s at rest, 3 s of 10 mm at 1 Hz, and so on.
+        let values: Vec<f64> = (0..1500_i32)
+            .map(|at| {
+                let moves = if at / 75 % 2 == 1 { 0.01 * (0.25 * f64::from(at)).sin() } else { 0.0 };
+                moves + normal.sample(&mut generator)
+            })
+            .collect();
+        let found = noise_std(&values);
+        // Half of the windows move: the quietest fifth of all is the middle of the others, a third above theirs.
+        assert!((1.8e-5..2.8e-5).contains(&found), "{found}");
     }
 
     #[test]

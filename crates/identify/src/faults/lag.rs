@@ -286,7 +286,8 @@ mod tests {
             repairs,
             ignored_columns: Vec::new(),
         };
-        let thresholds = Thresholds { length_m: 1e-4, pressure_pa: 1e3, turn_m: 0.0, standstill: Standstill::AT_ONCE };
+        let thresholds =
+            Thresholds { length_m: 1e-4, pressure_pa: 1e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::AT_ONCE };
         let prepared = direct(gate(vec![recording]).unwrap(), thresholds, Form::Corrected).unwrap();
         (prepared, ForceColumns::new(&muscle, 3e9, Form::Corrected, 3.5e5 * 0.25))
     }

@@ -1,0 +1,116 @@
+//! Where the length stands still, and where the pressure moves while it does.
+
+use std::ops::Range;
+
+use super::states::STANDSTILL_S;
+
+/// A shorter rest, in s, and how much less the length moves in it: so that neither is a crawl.
+const SHORT_S: f64 = 0.4;
+/// See [`SHORT_S`].
+const SHORT_SHARE: f64 = 0.4;
+
+/// Stretches of at least [`STANDSTILL_S`] in which the values stay within a `threshold`, and shorter ones in which they stay
+/// within less; in order, none within another.
+pub(super) fn standstills(time_s: &[f64], values: &[f64], threshold: f64) -> Vec<Range<usize>> {
+    let mut found = within(time_s, values, threshold, STANDSTILL_S);
+    let short = within(time_s, values, SHORT_SHARE * threshold, SHORT_S);
+    let apart = |short: &Range<usize>| found.iter().all(|long| short.end <= long.start || long.end <= short.start);
+    let short: Vec<Range<usize>> = short.into_iter().filter(apart).collect();
+    found.extend(short);
+    found.sort_by_key(|still| still.start);
+    found
+}
+
+/// Stretches of at least `least_s` in which the values stay within a `threshold`.
+fn within(time_s: &[f64], values: &[f64], threshold: f64, least_s: f64) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    let (mut low, mut high) = (values[0], values[0]);
+    for index in 0..=values.len() {
+        if index < values.len() {
+            low = low.min(values[index]);
+            high = high.max(values[index]);
+            if high - low <= threshold {
+                continue;
+            }
+        }
+        if time_s[index - 1] - time_s[start] >= least_s {
+            found.push(start..index);
+        }
+        if index < values.len() {
+            (start, low, high) = (index, values[index], values[index]);
+        }
+    }
+    found
+}
+
+/// Deviations of a length that rests beyond which it moves.
+const MOVES: f64 = 3.0;
+
+/// Where in the standstill `index` of `stills` the pressure moves while the length rests; none where it does not.
+///
+/// The end of a motion and the beginning of the next are within a threshold as well. A pressure that settles together with the
+/// length, or sets off with it, moves no strand that the length does not: those rows are left to the length. `noise_m` is the
+/// deviation of `contraction` at rest.
+pub(super) fn pushed(
+    stills: &[Range<usize>],
+    index: usize,
+    contraction: &[f64],
+    noise_m: f64,
+    pressure: &[f64],
+    threshold_pa: f64,
+) -> Option<Range<usize>> {
+    let still = &stills[index];
+    let n = still.len();
+    let middle = &contraction[still.start + n / 4..still.end - n / 4];
+    let level = middle.iter().sum::<f64>() / middle.len() as f64;
+    let spread = (middle.iter().map(|value| (value - level).powi(2)).sum::<f64>() / middle.len() as f64).sqrt();
+    let moves_m = MOVES * noise_m.max(spread);
+    let after_motion = still.start > 0 && (index == 0 || stills[index - 1].end < still.start);
+    let before_motion =
+        still.end < contraction.len() && stills.get(index + 1).is_none_or(|next| next.start > still.end);
+    let deviation_m = |row: usize| (contraction[row] - level).abs();
+    let (first, last) = (still.start, still.end - 1);
+    let mut rest = still.clone();
+    if after_motion {
+        rest.start += moving_rows(n, moves_m, threshold_pa, &|at| (deviation_m(first + at), pressure[first + at]));
+    }
+    if before_motion {
+        rest.end -= moving_rows(n, moves_m, threshold_pa, &|at| (deviation_m(last - at), pressure[last - at]));
+    }
+    (rest.start < rest.end && range(&pressure[rest.clone()]) > threshold_pa).then_some(rest)
+}
+
+/// How many of `n` rows of a standstill, counted inwards from one of its ends, belong to the motion beyond that end. `row` gives
+/// how far the length is from where it rests, and the pressure.
+fn moving_rows(n: usize, moves_m: f64, threshold_pa: f64, row: &dyn Fn(usize) -> (f64, f64)) -> usize {
+    let Some(rest) = (0..n).find(|&at| row(at).0 <= moves_m) else { return n };
+    let Some(far) = (0..rest).rev().find(|&at| row(at).0 > 3.0 * moves_m) else { return rest };
+    let rest_pa = row(rest).1;
+    let step_pa = rest_pa - row(far).1;
+    // The length has half of that way left, and the pressure with it; a settling that is not quite in step takes twice that.
+    let most_pa = step_pa.abs() + threshold_pa;
+    let (mut farthest_pa, mut farthest_at) = (0.0, rest);
+    for at in rest..n {
+        let along_pa = (row(at).1 - rest_pa) * step_pa.signum();
+        if along_pa > most_pa {
+            return rest;
+        }
+        if along_pa > farthest_pa {
+            (farthest_pa, farthest_at) = (along_pa, at);
+        }
+        if farthest_pa - along_pa > threshold_pa {
+            return farthest_at;
+        }
+    }
+    n
+}
+
+fn range(values: &[f64]) -> f64 {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &value in values {
+        low = low.min(value);
+        high = high.max(value);
+    }
+    high - low
+}
