@@ -240,14 +240,23 @@ class ForceDrift:
 
 
 class SeriesCompliance:
+    TURN_M = 1e-4
+
     def __init__(self, values, eq11):
-        self.compliance_m_per_n, self.rest_length_m = values["compliance_m_per_n"], eq11.rest_length_m
+        self.values, self.rest_length_m, self.last = values, eq11.rest_length_m, None
 
     def sees(self, now):
-        stretch_m = self.compliance_m_per_n * now.force_n
+        stretch_m = self.values["compliance_m_per_n"] * now.force_n
         now.length_m -= stretch_m
         now.contraction_ratio += stretch_m / self.rest_length_m
         now.slide_m += stretch_m
+        # The muscle turns where its own length does, not where the recorded one does.
+        turned = now.direction
+        if self.last is not None:
+            slide_m, direction = self.last
+            turned = min(max(direction + 2.0 * (now.slide_m - slide_m) / self.TURN_M, -1.0), 1.0)
+        self.last = (now.slide_m, turned)
+        now.direction += self.values["sliding_share"] * (turned - now.direction)
 
 
 class Inertia:
@@ -732,7 +741,8 @@ def directions_of(recording, muscle):
     thresholds = muscle.model["direction"]
     standstill = thresholds.get("standstill", {"slides": {"over_pa": 0.0}})
     over_pa = None if standstill == "held" else standstill["slides"]["over_pa"]
-    law = Law(thresholds["length_m"], thresholds["pressure_pa"], thresholds.get("turn_m", 0.0), over_pa)
+    travels_m = thresholds.get("held_m", 0.0), thresholds.get("turn_m", 0.0)
+    law = Law(thresholds["length_m"], thresholds["pressure_pa"], *travels_m, over_pa)
     found = np.zeros(len(recording.time_s))
     for segment in recording.segments():
         carried, known = UNKNOWN, []
@@ -757,6 +767,7 @@ class Law:
 
     length_m: float
     pressure_pa: float
+    held_m: float
     turn_m: float
     over_pa: float
 
@@ -773,10 +784,6 @@ def is_known(bound):
 def sign_of(bound):
     """The sign where it is certain, 0 elsewhere."""
     return (1 if 0.5 * (bound[0] + bound[1]) >= 0.0 else -1) if is_known(bound) else 0
-
-
-def sign(value):
-    return (value > 0) - (value < 0)
 
 
 def beginning(recording, rows, law, eq11, found):
@@ -812,36 +819,51 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     contraction = moving_average(shortening, half)
     play(contraction, shortening, law.length_m, half, sign_of(carried), marks, 0)
     pressure = moving_average(pressure_pa, half)
-    stills = [still for still in standstills(time_s, contraction, law.length_m)
-              if np.ptp(pressure[still.start : still.stop]) > law.pressure_pa]  # fmt: skip
+    stills = standstills(time_s, contraction, law.length_m)
+    noise_m = NOISE * law.length_m / math.sqrt(2 * half + 1)
+    pushed = [pushed_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
+    pushed = [rows for rows in pushed if rows is not None]
     slides = law.over_pa is not None and law.over_pa > 2.0 * law.pressure_pa
     if law.over_pa is not None and not slides:
-        for still in stills:
+        for still in pushed:
             before = marks[still.start - 1] if still.start > 0 else sign_of(carried)
             rows = slice(still.start, still.stop)
             marks[rows] = [0] * len(still)
             play(pressure[rows], pressure_pa[rows], law.pressure_pa, half, before, marks, still.start)
-            carry_on(marks, still.stop, marks[still.stop - 1], lambda mark: mark == 0)
+            rest = next((around.stop - still.stop for around in stills if still.start in around), 0)
+            carry_on(marks, still.stop, before, rest + 2 * half)
     bounds = [(float(mark), float(mark)) if mark else carried for mark in marks]
     if slides:
-        for still in stills:
+        for still in pushed:
             before = bounds[still.start - 1] if still.start > 0 else carried
             bounds[still.start : still.stop] = slide_bounds(pressure[still.start : still.stop], law.over_pa, before)
             unmoved = still.stop
             while unmoved < n and marks[unmoved] == 0:
                 bounds[unmoved] = bounds[still.stop - 1]
                 unmoved += 1
-    if law.turn_m > 0.0:
-        turn_over(contraction, law.turn_m, carried, [] if law.over_pa is None else stills, bounds)
+    if law.held_m > 0.0 or law.turn_m > 0.0:
+        # A parabola over n values leaves 2.25 / n of the variance in the middle one.
+        values = 2.25 * (NOISE * law.length_m / 4e-6) ** 2
+        path = Window(time_s, min(0.5 * values * period_s, 0.15)).parabolas(shortening)[0]
+        reach = min(max(int(math.floor(0.25 / period_s + 0.5)), 2 * half), 500)
+        turn_over(path.tolist(), law, reach, carried, [] if law.over_pa is None else pushed, bounds)
     return bounds
 
 
-def carry_on(values, start, value, while_true):
-    """Puts `value` from `start` on in the place of what satisfies a condition, up to the first that does not."""
-    for index in range(start, len(values)):
-        if not while_true(values[index]):
-            break
-        values[index] = value
+NOISE = 0.2  # deviations of the noise in a threshold
+
+
+def carry_on(marks, start, before, most):
+    """After a standstill friction is what the pressure has made of it, until the length turns or moves at all."""
+    last, turn = marks[start - 1], start
+    while turn < len(marks) and marks[turn] == before:
+        turn += 1
+    if turn - start >= most:
+        turn = start
+    marks[start:turn] = [last] * (turn - start)
+    while turn < len(marks) and marks[turn] == 0:
+        marks[turn] = last
+        turn += 1
 
 
 def slide_bounds(pressure, over_pa, before):
@@ -854,26 +876,51 @@ def slide_bounds(pressure, over_pa, before):
     return bounds
 
 
-def turn_over(contraction, turn_m, carried, pushed, bounds):
-    """Lets the states follow the travel, from where they are to the sign of the motion within `turn_m`."""
-    contraction, pushed = contraction.tolist(), list(pushed)
+def turn_over(path, law, reach, carried, pushed, bounds):
+    """Lets the states follow the travel along `path` after every turn; over the ranges `pushed` the pressure moves them. A turn is
+    where the path is farthest, within `reach` rows of where the sign changes."""
+    ways, is_pushed = [sign_of(bound) for bound in bounds], [False] * len(bounds)
+    for still in pushed:
+        is_pushed[still.start : still.stop] = [True] * len(still)
+
+    def free(start, stop):
+        return all(not is_pushed[row] and ways[row] != 0 for row in range(start, stop))
+
     state = 0.5 * (carried[0] + carried[1]) if is_known(carried) else None
-    way_before, farthest = sign_of(carried), contraction[0]
-    for row, bound in enumerate(bounds):
-        if not is_known(bound):
+    way_before, turn, at_turn, farthest_m, row = sign_of(carried), 0, state, 0.0, 0
+    while row < len(bounds):
+        if not is_known(bounds[row]):
+            row += 1
             continue
-        while pushed and pushed[0].stop <= row:
-            pushed.pop(0)
-        if pushed and row in pushed[0]:
-            state, way_before, farthest = 0.5 * (bound[0] + bound[1]), 0, contraction[row]
+        if is_pushed[row]:
+            state, way_before = 0.5 * (bounds[row][0] + bounds[row][1]), 0
+            row += 1
             continue
-        way = sign_of(bound)
-        if way != way_before:
-            way_before, farthest = way, contraction[row]
-        travel_m = max(way * (contraction[row] - farthest), 0.0)
-        farthest += way * travel_m
-        state = float(way) if state is None else min(max(state + 2.0 * way * travel_m / turn_m, -1.0), 1.0)
+        way = float(ways[row])
+        if ways[row] != way_before:
+            first = max(row - reach, 0)
+            around = first + int(np.argmin(way * np.array(path[first : min(len(path), row + reach)])))
+            # What came before the turn still goes the other way, what lies between it and here came this way already.
+            if way_before != 0 and around > row and free(row, around):
+                ways[row:around] = [way_before] * (around - row)
+                continue
+            back = max(around, turn)
+            start = back if way_before != 0 and back < row and free(back, row) else row
+            way_before = ways[row]
+            ways[start:row] = [way_before] * (row - start)
+            turn, farthest_m = min(around, row), 0.0
+            at_turn = 0.5 * (bounds[start][0] + bounds[start][1]) if 0 < start < row else state
+            row = start
+        farthest_m = max(farthest_m, way * (path[row] - path[turn]))
+        turned_m = max(farthest_m - law.held_m, 0.0)
+        if at_turn is not None and turned_m == 0.0:
+            state = at_turn
+        elif at_turn is not None and law.turn_m > 0.0:
+            state = min(max(at_turn + 2.0 * way * turned_m / law.turn_m, -1.0), 1.0)
+        else:
+            state = way
         bounds[row] = (state, state)
+        row += 1
 
 
 def moving_average(values, half):
@@ -886,18 +933,69 @@ def moving_average(values, half):
 
 
 def standstills(time_s, values, threshold):
-    """Ranges of at least a second in which the values stay within a threshold."""
+    """Ranges of at least a second in which the values stay within a threshold, and shorter ones within less; in order."""
+    found = within(time_s, values, threshold, 1.0)
+    for short in within(time_s, values, 0.4 * threshold, 0.4):
+        if all(short.stop <= still.start or still.stop <= short.start for still in found):
+            found.append(short)
+    return sorted(found, key=lambda still: still.start)
+
+
+def within(time_s, values, threshold, least_s):
+    """Ranges of at least `least_s` in which the values stay within a threshold."""
     found, start, low, high, values = [], 0, values[0], values[0], values.tolist()
     for index in range(len(values) + 1):
         if index < len(values):
             low, high = min(low, values[index]), max(high, values[index])
             if high - low <= threshold:
                 continue
-        if time_s[index - 1] - time_s[start] >= 1.0:
+        if time_s[index - 1] - time_s[start] >= least_s:
             found.append(range(start, index))
         if index < len(values):
             start, low, high = index, values[index], values[index]
     return found
+
+
+def pushed_rows(stills, index, contraction, noise_m, pressure, threshold_pa):
+    """Where in a standstill the pressure moves while the length rests; None where it does not. The end of a motion and the
+    beginning of the next are left to the length."""
+    still, n = stills[index], len(stills[index])
+    middle = contraction[still.start + n // 4 : still.stop - n // 4]
+    level = middle.sum() / len(middle)
+    moves_m = 3.0 * max(noise_m, math.sqrt(((middle - level) ** 2).sum() / len(middle)))
+    after_motion = still.start > 0 and (index == 0 or stills[index - 1].stop < still.start)
+    following = stills[index + 1].start if index + 1 < len(stills) else math.inf
+    before_motion = still.stop < len(contraction) and following > still.stop
+    deviations_m = np.abs(contraction[still.start : still.stop] - level).tolist()
+    pressures_pa = pressure[still.start : still.stop].tolist()
+    start, stop = still.start, still.stop
+    if after_motion:
+        start += moving_rows(deviations_m, pressures_pa, moves_m, threshold_pa)
+    if before_motion:
+        stop -= moving_rows(deviations_m[::-1], pressures_pa[::-1], moves_m, threshold_pa)
+    return range(start, stop) if start < stop and np.ptp(pressure[start:stop]) > threshold_pa else None
+
+
+def moving_rows(deviations_m, pressures_pa, moves_m, threshold_pa):
+    """How many rows of a standstill, from its end inwards, belong to the motion beyond that end."""
+    n = len(deviations_m)
+    rest = next((at for at in range(n) if deviations_m[at] <= moves_m), None)
+    if rest is None:
+        return n
+    far = next((at for at in reversed(range(rest)) if deviations_m[at] > 3.0 * moves_m), None)
+    if far is None:
+        return rest
+    step_pa = pressures_pa[rest] - pressures_pa[far]
+    farthest_pa, farthest_at = 0.0, rest
+    for at in range(rest, n):
+        along_pa = (pressures_pa[at] - pressures_pa[rest]) * math.copysign(1.0, step_pa)
+        if along_pa > abs(step_pa) + threshold_pa:
+            return rest
+        if along_pa > farthest_pa:
+            farthest_pa, farthest_at = along_pa, at
+        if farthest_pa - along_pa > threshold_pa:
+            return farthest_at
+    return n
 
 
 def play(smooth, raw, threshold, half, carried, marks, first):

@@ -89,7 +89,8 @@ pub(crate) fn model(effects: &[&dyn Effect]) -> String {
         let end = at + text[at..].find(',').unwrap();
         text.replace_range(at..end, value);
     }
-    let direction = "\"direction\": {\n  \"turn_m\": 3e-5, \"standstill\": {\"slides\": {\"over_pa\": 40000.0}},";
+    let direction =
+        "\"direction\": {\n  \"held_m\": 2e-5, \"turn_m\": 3e-5, \"standstill\": {\"slides\": {\"over_pa\": 40000.0}},";
     let entries: Vec<String> = effects.iter().map(|effect| entry(*effect)).collect();
     text.replace("\"direction\": {", direction)
         .replace("\"effects\": []", &format!("\"effects\": [{}]", entries.join(", ")))

@@ -106,6 +106,7 @@ pub(super) fn of_direction(artifact: &ModelArtifact, model: &ForceModel) -> Vec<
     let named = [
         ("TURN_THRESHOLD_M", thresholds.length_m),
         ("PRESSURE_THRESHOLD_PA", thresholds.pressure_pa),
+        ("HELD_M", thresholds.held_m),
         ("TURN_M", thresholds.turn_m),
         ("STANDSTILL_SLIDES", slides),
         ("STANDSTILL_OVER_PA", over_pa),

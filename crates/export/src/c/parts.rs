@@ -81,7 +81,7 @@ const PARTS: &[Part] = &[
         [Shared::Slip, Shared::Slopes]
     ),
     part!("force-drift", "force_drift", [Now], []),
-    part!("series-compliance", "series_compliance", [Now], []),
+    part!("series-compliance", "series_compliance", [Memory, Now], []),
     part!("inertia", "inertia", [Memory, Now], []),
     part!("slack", "slack", [Force], []),
     part!("pressure-lag", "pressure_lag", [Memory, Now], []),

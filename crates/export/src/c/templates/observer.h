@@ -29,6 +29,7 @@ typedef struct {
     pam_backlash_filter contraction, slide, rest_slide;
     double state, sign;                    /* of friction, and of the last motion; 0 before any */
     double farthest_m;                     /* contraction from which a turn is measured */
+    double at_turn, travel_m;              /* state at the last turn, and travel since */
     double still_s, still_low_m, still_high_m; /* since when the contraction lies between the two */
     double still_state, still_low_pa, still_high_pa; /* friction if that is a standstill */
     double by_pressure_m;
@@ -86,35 +87,36 @@ static inline void pam_restart_still(pam_observer *o, double contraction_m)
     o->resting = 0;
 }
 
-/* Lets friction turn over within PAM_TURN_M of travel. */
-static inline void pam_turn(pam_observer *o, double travel_m)
+/* State of friction by the travel since the last turn: it keeps its sign over PAM_HELD_M, then turns over within PAM_TURN_M. */
+static inline void pam_turn_over(pam_observer *o)
 {
-    o->state = PAM_TURN_M > 0.0 ? fmin(fmax(o->state + 2.0 * o->sign * travel_m / PAM_TURN_M, -1.0), 1.0) : o->sign;
+    const double turned_m = o->travel_m - PAM_HELD_M;
+    if (turned_m <= 0.0) {
+        o->state = o->at_turn;
+    } else {
+        o->state = PAM_TURN_M > 0.0 ? fmin(fmax(o->at_turn + 2.0 * o->sign * turned_m / PAM_TURN_M, -1.0), 1.0) : o->sign;
+    }
 }
 
-/* State of friction at a contraction: it turns over once the length has turned back. */
+/* A motion the other way, or after a rest, which has gone on for `travel_m` when it is noticed. */
+static inline void pam_turned(pam_observer *o, double sign, double contraction_m, double travel_m)
+{
+    o->at_turn = o->sign == 0.0 && o->state == 0.0 ? sign : o->state;
+    o->sign = sign;
+    o->travel_m = travel_m;
+    o->farthest_m = contraction_m;
+    pam_turn_over(o);
+}
+
 static inline void pam_direction_follow(pam_observer *o, double contraction_m)
 {
-    const double back_m = o->sign * (o->farthest_m - contraction_m);
-    double travel_m = 0.0;
-    if (o->sign == 0.0) {
-        const double moved_m = contraction_m - o->farthest_m;
-        if (fabs(moved_m) > PAM_TURN_THRESHOLD_M) {
-            o->state = o->sign = moved_m < 0.0 ? -1.0 : 1.0;
-            o->farthest_m = contraction_m;
-        }
-        return;
-    }
-    if (back_m > PAM_TURN_THRESHOLD_M) {
-        o->sign = -o->sign;
-        travel_m = back_m;
+    const double moved_m = contraction_m - o->farthest_m;
+    if (o->sign * moved_m > 0.0) {
+        o->travel_m += fabs(moved_m);
         o->farthest_m = contraction_m;
-    } else if (back_m < 0.0) {
-        travel_m = -back_m;
-        o->farthest_m = contraction_m;
-    }
-    if (travel_m > 0.0) {
-        pam_turn(o, travel_m);
+        pam_turn_over(o);
+    } else if (fabs(moved_m) > PAM_TURN_THRESHOLD_M) {
+        pam_turned(o, moved_m < 0.0 ? -1.0 : 1.0, contraction_m, fabs(moved_m));
     }
 }
 
@@ -149,9 +151,7 @@ static inline pam_moment pam_observe(pam_observer *o, double step_s, double pres
     o->still_high_m = fmax(o->still_high_m, contraction_m);
     if (o->still_high_m - o->still_low_m > PAM_TURN_THRESHOLD_M) {
         if (o->resting) {
-            o->sign = contraction_m < o->still_high_m ? -1.0 : 1.0;
-            o->farthest_m = contraction_m;
-            pam_turn(o, PAM_TURN_THRESHOLD_M);
+            pam_turned(o, contraction_m < o->still_high_m ? -1.0 : 1.0, contraction_m, PAM_TURN_THRESHOLD_M);
         }
         pam_restart_still(o, contraction_m);
     } else {
