@@ -183,8 +183,8 @@ fn step(parts: &[(&Part, &Term)]) -> String {
     format!(
         "/* Force, in N, at the next instant. */\n\
          static inline double pam_step(pam_state *state, const pam_moment *moment)\n{{\n    \
-         pam_moment now = *moment;\n    double slide = now.direction, force_n;\n    pam_base base;\n\
-         {}{}    base = pam_base_at(now.pressure_pa, now.length_m);\n{slopes}    \
+         pam_moment now = *moment;\n    double slide, force_n;\n    pam_base base;\n\
+         {}    slide = now.direction;\n{}    base = pam_base_at(now.pressure_pa, now.length_m);\n{slopes}    \
          force_n = base.static_force_n - slide * base.friction_n;\n{}{}    \
          state->force_n = force_n;\n    state->stepped = 1;\n    return force_n;\n}}\n\n",
         calls(Role::Sees),
