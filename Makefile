@@ -10,7 +10,7 @@ BIN = $(eval BIN := $(shell $(CARGO) metadata --no-deps --offline --format-versi
 # Where `make install` puts programs, manual pages and completions.
 PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
-PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench
+PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench pam-export
 
 .PHONY: all install test check bench compare tables tutorial hard-use odd-inputs mutate fuzz datasets recordings prove prove-worlds prove-real clean cargo-is-there
 

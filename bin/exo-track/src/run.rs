@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Context as _, ensure};
 use pam_cli::{Console, Output, Verdict, pretty_json, publish, write_example};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool, sha256_hex};
 use pam_core::effects::AugmentedModel;
@@ -262,29 +262,9 @@ fn read_inverse(
     };
     let (artifact, sha256) = InverseArtifact::read(path)?;
     let known = inputs.iter().find(|input| input.role == InputRole::Model).context("--model is missing")?;
-    trained_on(path, &artifact, known)?;
+    pam_cli::ensure_inverse_of(path, &artifact, known)?;
     inputs.push(Input { path: path.display().to_string(), sha256, role: InputRole::Inverse });
     Ok(Box::new(Network(InverseNetwork::from_artifact(&artifact))))
-}
-
-/// Refuses an inverse of another model than `known`: its pressures would be right for another muscle.
-fn trained_on(path: &Path, inverse: &InverseArtifact, known: &Input) -> anyhow::Result<()> {
-    let path = path.display();
-    let remedy = format!("train it anew with pam-train-inverse --model {} --out {path}", known.path);
-    let Some(trained) = inverse.inputs.iter().find(|input| input.role == InputRole::Model) else {
-        bail!("{path}: it does not say which model it is the inverse of; {remedy}");
-    };
-    let short = |sha256: &str| sha256.chars().take(8).collect::<String>();
-    ensure!(
-        trained.sha256 == known.sha256,
-        "{path}: it is the inverse of another model ({}, SHA-256 {}…) than --model {} ({}…); {remedy}, or name the model \
-         that it belongs to",
-        trained.path,
-        short(&trained.sha256),
-        known.path,
-        short(&known.sha256)
-    );
-    Ok(())
 }
 
 /// Says where the lift leaves what the model was identified on.

@@ -15,7 +15,7 @@ use crate::smoothing::{Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Para
 /// Deviations of the noise in a threshold of the direction.
 const DEVIATIONS_PER_THRESHOLD: f64 = 5.0;
 /// Six deviations of the noise, from peak to peak, over a threshold of the direction.
-const NOISE_PER_THRESHOLD: f64 = 6.0 / DEVIATIONS_PER_THRESHOLD;
+pub const NOISE_PER_THRESHOLD: f64 = 6.0 / DEVIATIONS_PER_THRESHOLD;
 
 /// One row of a recording with everything that effects need.
 #[derive(Debug, Clone, Copy, PartialEq)]

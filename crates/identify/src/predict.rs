@@ -64,31 +64,51 @@ pub fn walk_augmented(
     index: usize,
     visit: &mut dyn FnMut(&Instant, f64),
 ) -> io::Result<()> {
+    walk_moments(prepared, model, thresholds, index, &mut |instant, _, force_n| visit(instant, force_n))
+}
+
+/// As [`walk_augmented`], with the moment that the model's force was computed at as well: channels moved in time where the
+/// model says that they are late, and the force that effects see.
+///
+/// # Errors
+/// Where the samples cannot be read back.
+pub fn walk_moments(
+    prepared: &Prepared,
+    model: &AugmentedModel,
+    thresholds: Thresholds,
+    index: usize,
+    visit: &mut dyn FnMut(&Instant, &Moment, f64),
+) -> io::Result<()> {
     let Prepared { recording, direction, .. } = prepared;
     let has_force = recording.samples.has_force();
     let mut memory = model.start();
     let mut before_n = None;
-    let mut force_n = |now: Moment| {
+    let mut seen = |now: Moment| {
         let seen_n = if has_force {
             now.force_n
         } else {
             before_n.unwrap_or_else(|| model.settled_force_n(now.pressure_pa, now.length_m, now.direction))
         };
-        let force_n = memory.force_n(model, Moment { force_n: seen_n, ..now });
+        let now = Moment { force_n: seen_n, ..now };
+        let force_n = memory.force_n(model, now);
         before_n = Some(force_n);
-        force_n
+        (now, force_n)
     };
     let walk = |visit: &mut dyn FnMut(Instant)| {
         walk(recording, direction, thresholds, model.base(), index, 1, Channels::Recorded, visit)
     };
     let delays_s = model.delays_s();
     if delays_s == [0.0; 2] {
-        return walk(&mut |instant| visit(&instant, force_n(instant.moment)));
+        return walk(&mut |instant| {
+            let (moment, force_n) = seen(instant.moment);
+            visit(&instant, &moment, force_n);
+        });
     }
     let mut instants = Vec::new();
     walk(&mut |instant| instants.push(instant))?;
     for (instant, moment) in instants.iter().zip(shifted(&instants, delays_s)) {
-        visit(instant, force_n(moment));
+        let (moment, force_n) = seen(moment);
+        visit(instant, &moment, force_n);
     }
     Ok(())
 }

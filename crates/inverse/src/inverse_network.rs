@@ -93,6 +93,11 @@ impl InverseNetwork {
         &self.scaling
     }
 
+    /// By how much a force may lie beyond the reach and count as inside, in N.
+    pub fn force_margin_n(&self) -> f64 {
+        self.force_margin_n
+    }
+
     /// Where the network may be asked.
     pub fn domain(&self) -> &InverseDomain {
         &self.domain

@@ -69,7 +69,7 @@ pub struct Base {
 pub const LATEX_PA: f64 = 2.2e5;
 
 /// Share of `C₁₀` in the same.
-const LATEX_C10_SHARE: f64 = 118.4 / (118.4 + 105.7);
+pub const LATEX_C10_SHARE: f64 = 118.4 / (118.4 + 105.7);
 
 /// Steps of central differences, in Pa and in m: far above rounding, far below any bend of eq. 11.
 const STEP_PA: f64 = 100.0;

@@ -1,0 +1,20 @@
+typedef struct {
+    int started;
+    double time_s, warmth, power;
+} pam_thermal_softening;
+
+static inline double pam_thermal_softening_pulls(pam_thermal_softening *memory, const pam_moment *now,
+                                                 const pam_base *base)
+{
+    const double reference_w = 1e3;
+    const double power = fmax(base->normal_n, 0.0) * fabs(now->speed_m_per_s) / reference_w;
+    if (memory->started) {
+        const double heating = now->step_s > 0.0 ? 0.5 * (power + memory->power) : 0.0;
+        const double share = expm1(-fmax(now->time_s - memory->time_s, 0.0) / PAM_THERMAL_SOFTENING_TIME_CONSTANT_S);
+        memory->warmth += (memory->warmth - heating) * share;
+    }
+    memory->started = 1;
+    memory->time_s = now->time_s;
+    memory->power = power;
+    return -pam_latex_n(base) * memory->warmth * PAM_THERMAL_SOFTENING_SOFTENING_PER_KILOWATT;
+}
