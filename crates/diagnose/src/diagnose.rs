@@ -199,22 +199,27 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let verdict = verdict(&found, &sizes, knocks.is_some());
     let discovery = discover::discover(&setting, &found, &sizes, verdict, held.as_ref());
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
-    let state = discovery.as_ref().map_or(&found.best.state, |discovery| &discovery.best.state);
+    let (state, nuisance) = match &discovery {
+        Some(discovery) => (&discovery.best.state, &discovery.nuisance),
+        None => (&found.best.state, &found.nuisance),
+    };
+    let whole = question.setting(&track, nuisance);
     let undetermined = || DiagnoseError::Undetermined { path: estimation[0].recording.path.clone() };
-    let folds = setting.fold_fits(state).ok_or_else(undetermined)?;
+    let folds = whole.fold_fits(state).ok_or_else(undetermined)?;
     let uncertainty = Uncertainty::of(&folds, space);
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
 
-    let correlated = correlated_instants(&setting, &setting.residuals_n(state));
-    let (effects, mut entries) = named(&setting, &found, state, &uncertainty, correlated, knocks.as_ref());
-    let empirical = discovery.as_ref().map(|discovery| discovery.written(&setting, &found, &uncertainty));
+    let correlated = correlated_instants(&whole, &whole.residuals_n(state));
+    let (effects, mut entries) = named(&whole, &found, state, &uncertainty, correlated, knocks.as_ref());
+    let empirical = discovery.as_ref().map(|discovery| discovery.written(&whole, &found, &folds));
     entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
     let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
     let mut terms = state.terms();
-    if let Some(map) = found.nuisance.map_term(&state.fit.nuisances, &track, &found.coordinates) {
+    if let Some(map) = nuisance.map_term(&state.fit.nuisances, &track, &found.coordinates) {
         entries.push(map_entry(&map));
         terms.push(map);
     }
+    terms.extend(discovery.iter().flat_map(discover::Discovery::terms));
     if let Some(knocks) = &knocks {
         terms.push(knocks.term());
         regions.insert(if effects[0].id == knocks::ID { 0 } else { regions.len() }, knocks.region(sizes.mismatch_n));
@@ -327,7 +332,7 @@ pub(crate) fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evide
 }
 
 /// The effects that were taken and the mass behind `knocks`, in order of evidence, and in that in which a model has them;
-/// `correlated` instants of the residual stand for one, and `state` has terms without a name behind them.
+/// `correlated` instants of the residual stand for one; `state` is what was found, with terms without a name beside it.
 fn named(
     setting: &Setting<'_>,
     found: &Found,
@@ -338,8 +343,7 @@ fn named(
 ) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
     let mut named = Vec::new();
     let mut first = 0;
-    let with_names = found.best.state.guesses.len();
-    for (index, guess) in state.guesses.iter().enumerate().take(with_names) {
+    for (index, guess) in state.guesses.iter().enumerate() {
         let page = guess.effect.page();
         let errors = shape_errors(setting, state, index, correlated);
         let parameters = entries(state, index, first, &errors, uncertainty);

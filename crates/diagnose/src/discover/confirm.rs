@@ -2,8 +2,6 @@
 
 use pam_core::effects::AugmentedModel;
 
-use crate::search::Found;
-use crate::state::State;
 use crate::track::Track;
 use crate::veto::force_n;
 
@@ -20,10 +18,9 @@ pub(super) struct Left {
 }
 
 impl Left {
-    /// Of `state` with the static map of `found`.
-    pub(super) fn of(state: &State, found: &Found, track: &Track, held: &Track) -> Self {
-        let model = model(state, found, track).without_events();
-        let modelled_n = force_n(held, &model);
+    /// Of `model`, without what happened once.
+    pub(super) fn of(model: &AugmentedModel, held: &Track) -> Self {
+        let modelled_n = force_n(held, &model.without_events());
         let each = held.recordings.iter().map(|range| {
             let (mut squares, mut count) = (0.0, 0.0);
             for at in range.clone().filter(|&at| held.instants[at].force_n.is_finite()) {
@@ -49,12 +46,6 @@ impl Left {
         let harmed = self.each.iter().zip(&with.each).any(|(before, after)| after.0 > MOST_HARM * before.0);
         !harmed && with.together_n().powi(2) < (1.0 - LEAST_GAIN) * self.together_n().powi(2)
     }
-}
-
-fn model(state: &State, found: &Found, track: &Track) -> AugmentedModel {
-    let mut terms = state.terms();
-    terms.extend(found.nuisance.map_term(&state.fit.nuisances, track, &found.coordinates));
-    AugmentedModel::new(state.model.clone(), terms)
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@ use pam_core::artifact::diagnosis::EmpiricalCurve;
 use pam_core::effects::Sentence;
 use pam_core::effects::sentence::Argument;
 
-use crate::joint::JointFit;
 use crate::state::{Setting, State};
 
 /// Points of a curve.
@@ -12,16 +11,14 @@ const POINTS: usize = 121;
 /// Standard errors to either side: 95 % for the seven degrees of freedom that eight folds leave.
 const STANDARD_ERRORS: f64 = 2.36;
 
-/// Curve of effect `index` of `state`, whose amplitudes begin at `first`; `folds` each leave one fold out.
+/// Curve of `sentence` with `amplitudes`; `folds` are those of fits that each leave one fold out.
 pub(super) fn curve(
     setting: &Setting<'_>,
     state: &State,
-    index: usize,
-    first: usize,
-    folds: &[JointFit],
+    sentence: &Sentence,
+    amplitudes: &[f64],
+    folds: &[Vec<f64>],
 ) -> EmpiricalCurve {
-    let Some(sentence) = state.guesses[index].effect.sentence() else { return EmpiricalCurve::default() };
-    let n = sentence.n_amplitudes();
     let (mut values, mut factors) = (Vec::new(), Vec::new());
     for range in &setting.track.recordings {
         let mut argument = Argument::of(sentence);
@@ -42,10 +39,10 @@ pub(super) fn curve(
     };
     let along = |amplitudes: &[f64]| -> Vec<f64> {
         let point = |at: usize| low + (high - low) * at as f64 / (POINTS - 1) as f64;
-        (0..POINTS).map(|at| typical * value(sentence, point(at), amplitudes)).collect()
+        (0..POINTS).map(|at| typical * sentence.value(point(at), amplitudes)).collect()
     };
-    let force_n = along(&state.fit.amplitudes[first..first + n]);
-    let each: Vec<Vec<f64>> = folds.iter().map(|fit| along(&fit.amplitudes[first..first + n])).collect();
+    let force_n = along(amplitudes);
+    let each: Vec<Vec<f64>> = folds.iter().map(|amplitudes| along(amplitudes)).collect();
     let half = |at: usize| {
         let m = each.len() as f64;
         let mean = each.iter().map(|curve| curve[at]).sum::<f64>() / m;
@@ -61,8 +58,4 @@ pub(super) fn curve(
         force_n,
         typical_scale: typical,
     }
-}
-
-fn value(sentence: &Sentence, argument: f64, amplitudes: &[f64]) -> f64 {
-    sentence.value(argument, amplitudes)
 }

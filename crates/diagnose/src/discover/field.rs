@@ -108,13 +108,6 @@ impl<'a> Field<'a> {
         sorted
     }
 
-    /// Root mean square of the factor of `scale` over what is looked at.
-    pub(super) fn typical(&self, scale: Scale) -> f64 {
-        let factors = &self.factors[scale as usize];
-        let squares: f64 = self.looked_at.iter().flatten().map(|&at| factors[at].powi(2)).sum();
-        (squares / self.counts.iter().sum::<f64>().max(1.0)).sqrt()
-    }
-
     /// Products of a curve over `arguments` in proportion to `scale`; none where it is nothing anywhere.
     pub(super) fn products(&self, arguments: &[f64], scale: Scale, curve: &Curve) -> Option<Products> {
         let (q, k) = (self.remainder.n_directions, curve.n_amplitudes());

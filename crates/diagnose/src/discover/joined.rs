@@ -1,56 +1,77 @@
-//! A sentence fitted together with the base and everything that was named, as a model will carry it.
+//! Sentences fitted together with the base and everything that was named, as a model will carry them.
+//!
+//! The curve of a sentence stands among the nuisances: drawn to zero by as much as a static map is, so that what a parameter of
+//! eq. 11 can take as well is that parameter's.
 
-use pam_core::effects::Sentence;
-use pam_core::effects::sentence::{Curve, Scale, own};
+use std::ops::Range;
 
-use super::field::Field;
-use crate::hypothesis::{Guess, Sign};
+use pam_core::effects::sentence::{Argument, own};
+use pam_core::effects::{Sentence, Term};
+
+use crate::joint::JointFit;
+use crate::nuisance::{Group, Nuisance};
 use crate::search::{Judged, judged};
-use crate::state::Setting;
+use crate::state::{Setting, State};
 
-/// Share of the height of a curve by which it may go back and still be taken for one that never does.
-const GOES_BACK: f64 = 0.05;
+/// Fits after which what scales take of the base follows its new parameters closely enough.
+const ROUNDS: usize = 3;
 
-/// `best` with `sentence`; a curve that never goes back nearly becomes one that does not, where that foretells held-out blocks as
-/// well.
-pub(super) fn joined(setting: &Setting<'_>, field: &Field<'_>, best: &Judged, sentence: &Sentence) -> Option<Judged> {
-    let arguments = field.arguments(sentence);
-    let values = field.amplitudes(&field.products(&arguments, sentence.scale, &sentence.shape)?)?;
-    let plain = with(setting, best, &anchored(sentence, &values), Sign::Any)?;
-    let steady = steady(sentence, &values).and_then(|(sentence, sign)| with(setting, best, &sentence, sign));
-    Some(match steady {
-        Some(steady) if steady.held_out.mean_square() <= plain.held_out.mean_square() => steady,
-        _ => plain,
-    })
-}
-
-fn with(setting: &Setting<'_>, best: &Judged, sentence: &Sentence, sign: Sign) -> Option<Judged> {
-    let guess = Guess { effect: own(sentence).ok()?, shape: Vec::new(), sign, carried: false };
-    let mut guesses = best.state.guesses.clone();
-    guesses.push(guess);
-    judged(setting, setting.fit_near(guesses, &best.state)?)
-}
-
-/// `sentence` with its spline zero where its `values` are nearest to it, if a parameter of eq. 11 takes what is the same
-/// everywhere: the two could not be told apart.
-fn anchored(sentence: &Sentence, values: &[f64]) -> Sentence {
-    let absorbed = matches!(sentence.scale, Scale::One | Scale::GasForce | Scale::BladderForce | Scale::Friction);
-    let Curve::Spline { knots, zero_at: None } = &sentence.shape else { return sentence.clone() };
-    let least = (0..values.len()).min_by(|left, right| values[*left].abs().total_cmp(&values[*right].abs()));
-    let shape = Curve::Spline { knots: knots.clone(), zero_at: least.filter(|_| absorbed) };
-    Sentence { shape, ..sentence.clone() }
-}
-
-/// `sentence` with a curve that never goes back, where its `values` hardly do.
-fn steady(sentence: &Sentence, values: &[f64]) -> Option<(Sentence, Sign)> {
-    let Curve::Spline { knots, .. } = &sentence.shape else { return None };
-    let (up, down) = values.windows(2).fold((0.0, 0.0), |(up, down), pair| {
-        let step = pair[1] - pair[0];
-        (up + f64::max(step, 0.0), down + f64::max(-step, 0.0))
-    });
-    if f64::min(up, down) > GOES_BACK * f64::max(up, down) {
-        return None;
+/// `best` with `sentences` beside `bare`, which has none; and the nuisances with them.
+pub(super) fn joined(
+    setting: &Setting<'_>,
+    bare: &Nuisance,
+    best: &Judged,
+    sentences: &[Sentence],
+) -> Option<(Judged, Nuisance)> {
+    let mut state = best.state.clone();
+    let mut beside = bare.clone();
+    for _ in 0..ROUNDS {
+        beside = sentences.iter().fold(bare.clone(), |nuisance, sentence| {
+            nuisance.with_term(columns(setting, &state, sentence), &setting.track.counted)
+        });
+        state = setting.beside(&beside).fit_near(best.state.guesses.clone(), &state)?;
     }
-    let sign = if up > down { Sign::Positive } else { Sign::Negative };
-    Some((Sentence { shape: Curve::Monotone { knots: knots.clone() }, ..sentence.clone() }, sign))
+    let judged = judged(&setting.beside(&beside), state)?;
+    Some((judged, beside))
+}
+
+/// Force per unit of each amplitude at every instant, one vector an amplitude.
+fn columns(setting: &Setting<'_>, state: &State, sentence: &Sentence) -> Vec<Vec<f64>> {
+    let n = setting.track.n();
+    let mut columns = vec![vec![0.0; n]; sentence.n_amplitudes()];
+    let mut row = vec![0.0; columns.len()];
+    for range in &setting.track.recordings {
+        let mut argument = Argument::of(sentence);
+        for at in range.clone() {
+            let (now, base) = (&state.sheet.seen[at], &state.sheet.base[at]);
+            let value = argument.follow(now, base);
+            sentence.columns(value, now, base, &mut row);
+            columns.iter_mut().zip(&row).for_each(|(column, value)| column[at] = *value);
+        }
+    }
+    columns
+}
+
+/// Which nuisances are the curve of each sentence, in order.
+pub(super) fn curves(nuisance: &Nuisance) -> Vec<Range<usize>> {
+    let of_terms = nuisance.groups.iter().filter(|(group, _)| *group == Group::Term);
+    of_terms.map(|(_, columns)| columns.clone()).collect()
+}
+
+/// Amplitudes of every sentence in `fit`, in order.
+pub(super) fn amplitudes(nuisance: &Nuisance, fit: &JointFit) -> Vec<Vec<f64>> {
+    curves(nuisance).into_iter().map(|columns| nuisance.in_their_units(&fit.nuisances, columns)).collect()
+}
+
+/// `sentences` as a model carries them, with their amplitudes in `state`.
+pub(super) fn terms(sentences: &[Sentence], nuisance: &Nuisance, state: &State) -> Vec<Term> {
+    let term = |(sentence, amplitudes): (&Sentence, Vec<f64>)| {
+        let effect = own(sentence).ok()?;
+        let within = |(value, amplitude): (f64, &pam_core::effects::Amplitude)| {
+            value.clamp(amplitude.range.0, amplitude.range.1)
+        };
+        let amplitudes = amplitudes.into_iter().zip(effect.amplitudes()).map(within).collect();
+        Some(Term { effect, shape: Vec::new(), amplitudes })
+    };
+    sentences.iter().zip(amplitudes(nuisance, &state.fit)).filter_map(term).collect()
 }

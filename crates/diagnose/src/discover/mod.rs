@@ -19,17 +19,19 @@ mod screen;
 mod stability;
 
 use pam_core::artifact::diagnosis::{Empirical, EmpiricalGain, EmpiricalTerm, Stability, StabilityRival, Verdict};
-use pam_core::effects::Sentence;
+use pam_core::artifact::model::ParameterEntry;
+use pam_core::effects::{AugmentedModel, Sentence, Term};
 
 use self::confirm::Left;
 use self::field::Field;
 use self::screen::Said;
 use crate::diagnose::evidence;
-use crate::joint::HeldOut;
-use crate::search::{Found, Judged, chance};
-use crate::state::{Setting, State};
+use crate::joint::{HeldOut, JointFit};
+use crate::nuisance::Nuisance;
+use crate::search::{Found, Judged, again, chance, fitting};
+use crate::state::Setting;
 use crate::track::Track;
-use crate::uncertainty::{Uncertainty, entries};
+use crate::uncertainty::entry;
 use crate::verdict::Sizes;
 
 /// Terms that may be written.
@@ -44,21 +46,25 @@ const LEAST_SHARE: f64 = 0.05;
 const LOOKS: f64 = 500.0;
 /// Chance that is no longer believed in, where no recording was held out to ask.
 const CHANCE: f64 = 0.05;
+/// Share of the mean square over held-out blocks that a static map must take up beside terms to be kept.
+const WORTH_A_MAP: f64 = 0.02;
 /// Times the sensors' noise that an explained mismatch may leave, root mean square, before more is looked for.
 const LEAVES_ENOUGH: f64 = 1.5;
 
 /// Terms without a name, fitted jointly with everything else.
 #[derive(Debug)]
 pub(crate) struct Discovery {
-    /// Base, effects and, after them, the terms.
+    /// Base and effects beside [`nuisance`](Self::nuisance).
     pub(crate) best: Judged,
+    /// What is in beside them, the curves of the terms included.
+    pub(crate) nuisance: Nuisance,
     terms: Vec<Written>,
     held_out: Option<[Left; 2]>,
     before: HeldOut,
 }
 
 /// A term that is written.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Written {
     sentence: Sentence,
     without: HeldOut,
@@ -67,7 +73,30 @@ struct Written {
     chosen: Vec<(Said, f64)>,
 }
 
-/// Looks for terms on what `found` leaves of `track`, if `verdict` says that something is left; none where nothing gains on
+/// Base and effects with terms, and what is in beside them.
+#[derive(Clone)]
+struct Step {
+    best: Judged,
+    nuisance: Nuisance,
+    terms: Vec<Written>,
+}
+
+impl Step {
+    fn sentences(&self) -> Vec<Sentence> {
+        self.terms.iter().map(|written| written.sentence.clone()).collect()
+    }
+
+    /// As a model carries it.
+    fn model(&self, found: &Found, track: &Track) -> AugmentedModel {
+        let state = &self.best.state;
+        let mut terms = state.terms();
+        terms.extend(self.nuisance.map_term(&state.fit.nuisances, track, &found.coordinates));
+        terms.extend(joined::terms(&self.sentences(), &self.nuisance, state));
+        AugmentedModel::new(state.model.clone(), terms)
+    }
+}
+
+/// Looks for terms on what `found` leaves of `setting`, if `verdict` says that something is left; none where nothing gains on
 /// `held`, or where there is nothing held out on the blocks.
 pub(crate) fn discover(
     setting: &Setting<'_>,
@@ -84,54 +113,76 @@ pub(crate) fn discover(
     if !left_over {
         return None;
     }
-    let left = |state: &State| held.map(|held| Left::of(state, found, setting.track, held));
-    let before = left(&found.best.state);
-    let mut best = found.best.clone();
+    let left = |step: &Step| held.map(|held| Left::of(&step.model(found, setting.track), held));
+    let start = Step { best: found.best.clone(), nuisance: found.nuisance.clone(), terms: Vec::new() };
+    let before = left(&start);
+    let (plain, mapped) = nuisances(setting, found)?;
+    let mut smooth = Step { best: again(&setting.beside(&mapped), &found.best)?, nuisance: mapped.clone(), ..start };
+    let mut kept: Option<Step> = None;
     let mut last = before.clone();
-    let mut terms: Vec<Written> = Vec::new();
-    while terms.len() < MOST_TERMS {
-        let Some((next, written)) = next_term(setting, &best) else { break };
-        let now = left(&next.state);
+    while smooth.terms.len() < MOST_TERMS {
+        let Some(next) = next_term(setting, &mapped, &smooth) else { break };
+        let now_kept = without_map(setting, &plain, &next)?;
+        let now = left(&now_kept);
+        let written = &next.terms[next.terms.len() - 1];
         let is_confirmed = match (&last, &now) {
             (Some(last), Some(now)) => last.is_bettered_by(now),
             _ => chance(&written.without, &written.with) * LOOKS < CHANCE,
         };
+        if std::env::var("DISC").is_ok() { eprintln!("  held last {:?} now {:?} chance {:e}", last.as_ref().map(|l| l.together_n()), now.as_ref().map(|l| l.together_n()), chance(&written.without, &written.with)); }
         if !is_confirmed {
             break;
         }
-        (best, last) = (next, now);
-        terms.push(written);
+        (smooth, last, kept) = (next, now, Some(now_kept));
     }
-    let before_blocks = found.best.held_out.clone();
-    (!terms.is_empty()).then(|| Discovery {
-        best,
-        terms,
-        held_out: before.zip(last).map(|(a, b)| [a, b]),
-        before: before_blocks,
-    })
+    let Step { best, nuisance, terms } = kept?;
+    Some(Discovery { best, nuisance, terms, held_out: before.zip(last).map(<[Left; 2]>::from), before: found.best.held_out.clone() })
 }
 
-/// `best` with one more term that gains on held-out blocks.
-fn next_term(setting: &Setting<'_>, best: &Judged) -> Option<(Judged, Written)> {
-    let field = Field::of(setting, &best.state)?;
-    let said = screen::screen(&field, setting, &best.state);
+/// What is in beside sentences: nuisances without a static map, and with one that is as smooth as foretells held-out blocks best,
+/// so that nothing smooth and static is taken for a term.
+fn nuisances(setting: &Setting<'_>, found: &Found) -> Option<(Nuisance, Nuisance)> {
+    let plain = found.nuisance.without_map();
+    let mapped = plain.with_map(setting.track, &found.coordinates);
+    let (_, mapped) = fitting(&setting.beside(&plain), &found.best, &mapped)?;
+    Some((plain, mapped))
+}
+
+/// `step` without the static map where that gains nothing on held-out blocks.
+fn without_map(setting: &Setting<'_>, plain: &Nuisance, step: &Step) -> Option<Step> {
+    let (bare, nuisance) = joined::joined(setting, plain, &step.best, &step.sentences())?;
+    let keeps = step.best.held_out.mean_square() < (1.0 - WORTH_A_MAP) * bare.held_out.mean_square();
+    Some(if keeps { step.clone() } else { Step { best: bare, nuisance, terms: step.terms.clone() } })
+}
+
+/// `step` with one more term that gains on held-out blocks; `mapped` is what is in beside terms.
+fn next_term(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Option<Step> {
+    let best = &step.best;
+    let beside = setting.beside(&step.nuisance);
+    let field = Field::of(&beside, &best.state)?;
+    let said = screen::screen(&field, &beside, &best.state);
     let fitted = said.iter().take(FITTED).enumerate().filter_map(|(index, said)| {
-        let next = joined::joined(setting, &field, best, &said.sentence)?;
-        Some((best.held_out.log_ratio(&next.held_out), index, next))
+        let sentences = [step.sentences(), vec![said.sentence.clone()]].concat();
+        let (next, nuisance) = joined::joined(setting, mapped, best, &sentences)?;
+        Some((best.held_out.log_ratio(&next.held_out) - said.charge(), index, next, nuisance))
     });
-    let (log_ratio, index, next) = fitted.max_by(|left, right| left.0.total_cmp(&right.0))?;
+    let fitted: Vec<(f64, usize, Judged, Nuisance)> = fitted.collect();
+    if std::env::var("DISC").is_ok() { for s in &said { eprintln!("  {:.2} {} {:?} {:?}", s.evidence, said::in_short(&s.sentence), s.sentence.shape.name(), s.sentence.shape.n_amplitudes()); } for f in &fitted { eprintln!("    fitted {} {:.2} {:.3} -> {:.3}", f.1, f.0, best.held_out.mean_square().sqrt(), f.2.held_out.mean_square().sqrt()); } }
+    let (log_ratio, index, next, nuisance) = fitted.into_iter().max_by(|left, right| left.0.total_cmp(&right.0))?;
     let gained = best.held_out.mean_square() - next.held_out.mean_square();
     if log_ratio < LEAST_LOG_RATIO || gained < LEAST_SHARE * best.held_out.mean_square() {
         return None;
     }
-    let sentence = next.state.guesses.last()?.effect.sentence()?.clone();
     let shares = stability::chosen(&field, &said);
     let mut chosen: Vec<(Said, f64)> = said.into_iter().zip(shares).collect();
     let own = chosen.remove(index);
     chosen.sort_by(|left, right| right.1.total_cmp(&left.1));
+    let sentence = own.0.sentence.clone();
     chosen.insert(0, own);
     let (without, with) = (best.held_out.clone(), next.held_out.clone());
-    Some((next, Written { sentence, without, with, chosen }))
+    let mut terms = step.terms.clone();
+    terms.push(Written { sentence, without, with, chosen });
+    Some(Step { best: next, nuisance, terms })
 }
 
 impl Discovery {
@@ -140,36 +191,54 @@ impl Discovery {
         if verdict == Verdict::Explained { Verdict::ExplainedInPart } else { verdict }
     }
 
-    /// What a diagnosis writes of the terms.
-    pub(crate) fn written(&self, setting: &Setting<'_>, found: &Found, uncertainty: &Uncertainty) -> Empirical {
+    /// The terms as a model carries them.
+    pub(crate) fn terms(&self) -> Vec<Term> {
+        let sentences: Vec<Sentence> = self.terms.iter().map(|written| written.sentence.clone()).collect();
+        joined::terms(&sentences, &self.nuisance, &self.best.state)
+    }
+
+    /// What a diagnosis writes of the terms; `folds` each leave one fold out.
+    pub(crate) fn written(&self, setting: &Setting<'_>, found: &Found, folds: &[JointFit]) -> Empirical {
         let state = &self.best.state;
-        let folds = setting.fold_fits(state).unwrap_or_default();
-        let first_term = state.guesses.len() - self.terms.len();
-        let mut first = crate::hypothesis::n_amplitudes(&state.guesses[..first_term]);
-        let mut terms = Vec::new();
-        for (offset, written) in self.terms.iter().enumerate() {
-            let index = first_term + offset;
-            let n = state.guesses[index].amplitudes().len();
-            let curve = curve::curve(setting, state, index, first, &folds);
-            terms.push(EmpiricalTerm {
+        let by_fold: Vec<Vec<Vec<f64>>> = folds.iter().map(|fit| joined::amplitudes(&self.nuisance, fit)).collect();
+        let terms = self.terms.iter().zip(self.terms()).enumerate().map(|(index, (written, term))| {
+            let of_folds: Vec<Vec<f64>> = by_fold.iter().map(|fold| fold[index].clone()).collect();
+            let curve = curve::curve(setting, state, &written.sentence, &term.amplitudes, &of_folds);
+            EmpiricalTerm {
                 equation: written.sentence.equation(),
                 words: said::words(&written.sentence, &curve),
                 sentence: written.sentence.clone(),
-                parameters: entries(state, index, first, &[], uncertainty),
+                parameters: parameters(&term, &of_folds),
                 evidence: evidence(&written.without, &written.with, LOOKS as usize),
                 stability: stability_of(&written.chosen),
                 nearest: nearest::nearest(found, &self.best.held_out),
                 curve,
-            });
-            first += n;
-        }
-        let gain = |without_n, with_n| EmpiricalGain { rmse_without_n: without_n, rmse_with_n: with_n };
+            }
+        });
+        let gain = |rmse_without_n, rmse_with_n| EmpiricalGain { rmse_without_n, rmse_with_n };
         Empirical {
-            terms,
+            terms: terms.collect(),
             blocks: gain(self.before.mean_square().sqrt(), self.best.held_out.mean_square().sqrt()),
             holdout: self.held_out.as_ref().map(|[before, after]| gain(before.together_n(), after.together_n())),
         }
     }
+}
+
+/// Amplitudes of a term, with standard errors by the jackknife over folds.
+fn parameters(term: &Term, folds: &[Vec<f64>]) -> Vec<ParameterEntry> {
+    let n = folds.len() as f64;
+    let stderr = |index: usize| {
+        let mean = folds.iter().map(|fold| fold[index]).sum::<f64>() / n;
+        let squares: f64 = folds.iter().map(|fold| (fold[index] - mean).powi(2)).sum();
+        ((n - 1.0) / n * squares).sqrt()
+    };
+    let values = term.effect.amplitudes().iter().zip(&term.amplitudes).enumerate();
+    values
+        .map(|(index, (amplitude, &value))| {
+            let stderr = Some(stderr(index)).filter(|stderr| stderr.is_finite());
+            entry(amplitude.name, amplitude.unit, value, amplitude.range, stderr)
+        })
+        .collect()
 }
 
 /// What the terms do and gain, to be said after the verdict.

@@ -6,7 +6,6 @@ use rayon::prelude::*;
 
 use super::field::{Field, Products};
 use super::lexicon::{knots, lexicon, stretched};
-use crate::joint::HeldOut;
 use crate::state::{Setting, State};
 
 /// Knots of the first look.
@@ -19,19 +18,40 @@ const KNOTS: [usize; 6] = [4, 6, 9, 14, 20, 30];
 const LOOKED_AT_AGAIN: usize = 10;
 /// Evidence that every degree of freedom has to bring.
 const CHARGE: f64 = 0.15;
+/// Evidence, and share of the evidence, that every step away from the plainest scale has to bring.
+const SCALE_CHARGE: (f64, f64) = (0.15, 0.01);
 /// Rounds in which the numbers of a memory and of a bump are halved in on.
 const ROUNDS: usize = 4;
 
-/// A sentence with what it leaves of held-out blocks.
+/// A sentence with what it gains on held-out blocks.
 #[derive(Debug, Clone)]
 pub(super) struct Said {
     pub(super) sentence: Sentence,
-    pub(super) held_out: HeldOut,
     /// `Σ ln(without / with)` over held-out blocks, less what its degrees of freedom have to bring.
     pub(super) evidence: f64,
 }
 
+/// What a sentence that gains so much has to bring before it counts: the plainer of two that foretell as much is right.
+fn charge(sentence: &Sentence, gained: f64) -> f64 {
+    let freedom = (sentence.shape.n_parameters() + sentence.memory.n_parameters()) as f64;
+    CHARGE * freedom + steps_from_plain(sentence.scale) * (SCALE_CHARGE.0 + SCALE_CHARGE.1 * gained.abs())
+}
+
+fn steps_from_plain(scale: Scale) -> f64 {
+    match scale {
+        Scale::One => 0.0,
+        Scale::Direction | Scale::Contracting | Scale::Extending | Scale::Pressure => 1.0,
+        Scale::Friction | Scale::GasForce | Scale::SlopeOverPressure | Scale::SlopeOverLength => 1.5,
+        Scale::BladderForce => 3.0,
+    }
+}
+
 impl Said {
+    /// What its evidence was charged with.
+    pub(super) fn charge(&self) -> f64 {
+        charge(&self.sentence, self.evidence)
+    }
+
     /// Whether `other` differs from it by numbers alone.
     pub(super) fn is_like(&self, other: &Sentence) -> bool {
         alike(&self.sentence, other)
@@ -87,7 +107,7 @@ fn best(said: impl Iterator<Item = Said>) -> Option<Said> {
 
 fn spline(sorted: &[f64], n: usize) -> Option<Curve> {
     let knots = knots(sorted, n);
-    (knots.len() > 2).then_some(Curve::Spline { knots, zero_at: None })
+    (knots.len() > 2).then_some(Curve::Spline { knots })
 }
 
 /// `sentence` over `arguments`, judged, with the range that it is seen in.
@@ -98,14 +118,14 @@ fn said(field: &Field<'_>, sentence: &Sentence, arguments: &[f64]) -> Option<Sai
 
 fn judged(field: &Field<'_>, sentence: &Sentence, arguments: &[f64], products: &Products) -> Option<Said> {
     let held_out = field.held_out(products)?;
-    let freedom = sentence.shape.n_parameters() + sentence.memory.n_parameters();
-    let evidence = field.nothing.log_ratio(&held_out) - CHARGE * freedom as f64;
+    let gained = field.nothing.log_ratio(&held_out);
+    let evidence = gained - charge(sentence, gained);
     let (low, high) = arguments
         .iter()
         .filter(|value| value.is_finite())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
     let sentence = Sentence { seen: [low, high], ..sentence.clone() };
-    (low < high && evidence.is_finite()).then_some(Said { sentence, held_out, evidence })
+    (low < high && evidence.is_finite()).then_some(Said { sentence, evidence })
 }
 
 /// The same with better numbers of its memory.

@@ -6,7 +6,7 @@
 //! | `saturation` | `a sgn(u) (1 - e^{-\|u\| / over})`, `u = x - from`                         | `a`               |
 //! | `bump`       | `a e^{-((x - center) / width)²}`                                          | `a`               |
 //! | `monotone`   | `Σ a_i clamp((x - k_i) / (k_{i+1} - k_i), 0, 1)`, all `a_i` of one sign     | one a step        |
-//! | `spline`     | cubic Hermite through `a_i` at `k_i`, slope at `k_i` that from `k_{i-1}` to `k_{i+1}` | one a knot but `zero_at` |
+//! | `spline`     | cubic Hermite through `a_i` at `k_i`, slope at `k_i` that from `k_{i-1}` to `k_{i+1}` | one a knot |
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -43,10 +43,6 @@ pub enum Curve {
     Spline {
         /// Knots, rising.
         knots: Vec<f64>,
-        /// Knot, from 0, at which it is zero, where a parameter of eq. 11 takes what is the same everywhere; none where no
-        /// parameter does.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        zero_at: Option<usize>,
     },
 }
 
@@ -67,7 +63,7 @@ impl Curve {
         match self {
             Self::Line | Self::Saturation { .. } | Self::Bump { .. } => 1,
             Self::Monotone { knots } => knots.len().saturating_sub(1),
-            Self::Spline { knots, zero_at } => knots.len() - usize::from(zero_at.is_some()),
+            Self::Spline { knots } => knots.len(),
         }
     }
 
@@ -95,10 +91,7 @@ impl Curve {
                 }
                 Ok(())
             }
-            Self::Spline { knots, zero_at: Some(zero_at) } if *zero_at >= knots.len() => {
-                Err(format!("zero_at is {zero_at}, and the spline has {} knots", knots.len()))
-            }
-            Self::Monotone { knots } | Self::Spline { knots, .. } => {
+            Self::Monotone { knots } | Self::Spline { knots } => {
                 if !(2..=MOST_KNOTS).contains(&knots.len()) {
                     return Err(format!("a {} has {} knots; give 2 to {MOST_KNOTS}", self.name(), knots.len()));
                 }
@@ -134,11 +127,7 @@ impl Curve {
     /// The same, each value that is not zero with its amplitude.
     pub fn each(&self, x: f64, visit: &mut dyn FnMut(usize, f64)) {
         match self {
-            Self::Spline { knots, zero_at } => hermite(knots, x, &mut |knot, value| match *zero_at {
-                Some(zero) if knot == zero => {}
-                Some(zero) if knot > zero => visit(knot - 1, value),
-                _ => visit(knot, value),
-            }),
+            Self::Spline { knots } => hermite(knots, x, visit),
             _ => {
                 let mut columns = [0.0; MOST_KNOTS];
                 let columns = &mut columns[..self.n_amplitudes()];
@@ -184,7 +173,7 @@ mod tests {
     #[test]
     fn a_spline_goes_through_its_values_and_a_straight_one_stays_straight() {
         let knots = vec![0.0, 1.0, 2.5, 3.0, 5.0];
-        let curve = Curve::Spline { knots: knots.clone(), zero_at: None };
+        let curve = Curve::Spline { knots: knots.clone() };
         for (index, knot) in knots.iter().enumerate() {
             let mut unit = [0.0; 5];
             unit[index] = 1.0;
@@ -197,22 +186,11 @@ mod tests {
     }
 
     #[test]
-    fn a_spline_is_zero_where_it_has_to_be() {
-        let free = Curve::Spline { knots: vec![0.0, 1.0, 2.0, 3.0], zero_at: None };
-        let held = Curve::Spline { knots: vec![0.0, 1.0, 2.0, 3.0], zero_at: Some(1) };
-        for x in [0.0, 0.4, 1.0, 1.3, 2.9] {
-            let expected = value(&free, x, &[3.0, 0.0, -1.0, 2.0]);
-            assert!((value(&held, x, &[3.0, -1.0, 2.0]) - expected).abs() < 1e-12, "{x}");
-        }
-        assert!(Curve::Spline { knots: vec![0.0, 1.0], zero_at: Some(2) }.check().is_err());
-    }
-
-    #[test]
     fn a_smooth_function_is_followed_to_the_third_order() {
         let error = |n: usize| {
             let knots: Vec<f64> = (0..n).map(|index| index as f64 / (n - 1) as f64).collect();
             let values: Vec<f64> = knots.iter().map(|knot| (6.0 * knot).sin()).collect();
-            let curve = Curve::Spline { knots, zero_at: None };
+            let curve = Curve::Spline { knots };
             // Inside, where slopes are central.
             (25..75)
                 .map(|at| 0.01 * f64::from(at))

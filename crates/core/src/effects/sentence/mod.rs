@@ -143,7 +143,7 @@ mod tests {
         let messages = [
             refusal(&|sentence| sentence.seen = [0.2, 0.1]),
             refusal(&|sentence| sentence.shape = Curve::Bump { center: 0.1, width: 0.0 }),
-            refusal(&|sentence| sentence.shape = Curve::Spline { knots: vec![0.1, 0.1, 0.2], zero_at: None }),
+            refusal(&|sentence| sentence.shape = Curve::Spline { knots: vec![0.1, 0.1, 0.2] }),
             refusal(&|sentence| sentence.memory = Recall::Lag { time_constant_s: -1.0 }),
             refusal(&|sentence| (sentence.driver, sentence.memory) = (Driver::Pressure, Recall::Work)),
         ];

@@ -58,8 +58,7 @@ fn amplitudes(sentence: &Sentence) -> Vec<Amplitude> {
         Curve::Monotone { knots } => (1..knots.len())
             .map(|index| Amplitude { name: format!("rise_{index}").leak(), unit, range: (-largest, largest) })
             .collect(),
-        Curve::Spline { knots, zero_at } => (0..knots.len())
-            .filter(|index| Some(*index) != *zero_at)
+        Curve::Spline { knots } => (0..knots.len())
             .map(|index| Amplitude { name: format!("value_{}", index + 1).leak(), unit, range: (-largest, largest) })
             .collect(),
     }
@@ -202,7 +201,7 @@ mod tests {
         let force = ForceModel::new(&nominal(), 3e9, Form::Corrected, parameters);
         let longer = Sentence {
             scale: Scale::SlopeOverLength,
-            ..sentence(Curve::Spline { knots: vec![0.0, 0.1, 0.2], zero_at: None })
+            ..sentence(Curve::Spline { knots: vec![0.0, 0.1, 0.2] })
         };
         let effect = own(&longer).expect("an effect");
         // As if the length read a tenth of a millimetre short everywhere.
