@@ -224,7 +224,11 @@ impl Nuisance {
         });
         Self {
             n: columns.len(),
-            rows: self.rows.chunks_exact(self.n.max(1)).flat_map(|row| columns.iter().map(|&column| row[column])).collect(),
+            rows: self
+                .rows
+                .chunks_exact(self.n.max(1))
+                .flat_map(|row| columns.iter().map(|&column| row[column]))
+                .collect(),
             precision: of(&self.precision),
             scales: of(&self.scales),
             groups: renumbered.collect(),

@@ -129,14 +129,19 @@ pub(crate) fn discover(
             (Some(last), Some(now)) => last.is_bettered_by(now),
             _ => chance(&written.without, &written.with) * LOOKS < CHANCE,
         };
-        if std::env::var("DISC").is_ok() { eprintln!("  held last {:?} now {:?} chance {:e}", last.as_ref().map(|l| l.together_n()), now.as_ref().map(|l| l.together_n()), chance(&written.without, &written.with)); }
         if !is_confirmed {
             break;
         }
         (smooth, last, kept) = (next, now, Some(now_kept));
     }
     let Step { best, nuisance, terms } = kept?;
-    Some(Discovery { best, nuisance, terms, held_out: before.zip(last).map(<[Left; 2]>::from), before: found.best.held_out.clone() })
+    Some(Discovery {
+        best,
+        nuisance,
+        terms,
+        held_out: before.zip(last).map(<[Left; 2]>::from),
+        before: found.best.held_out.clone(),
+    })
 }
 
 /// What is in beside sentences: nuisances without a static map, and with one that is as smooth as foretells held-out blocks best,
@@ -167,7 +172,6 @@ fn next_term(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Option<St
         Some((best.held_out.log_ratio(&next.held_out) - said.charge(), index, next, nuisance))
     });
     let fitted: Vec<(f64, usize, Judged, Nuisance)> = fitted.collect();
-    if std::env::var("DISC").is_ok() { for s in &said { eprintln!("  {:.2} {} {:?} {:?}", s.evidence, said::in_short(&s.sentence), s.sentence.shape.name(), s.sentence.shape.n_amplitudes()); } for f in &fitted { eprintln!("    fitted {} {:.2} {:.3} -> {:.3}", f.1, f.0, best.held_out.mean_square().sqrt(), f.2.held_out.mean_square().sqrt()); } }
     let (log_ratio, index, next, nuisance) = fitted.into_iter().max_by(|left, right| left.0.total_cmp(&right.0))?;
     let gained = best.held_out.mean_square() - next.held_out.mean_square();
     if log_ratio < LEAST_LOG_RATIO || gained < LEAST_SHARE * best.held_out.mean_square() {

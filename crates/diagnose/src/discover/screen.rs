@@ -20,8 +20,12 @@ const LOOKED_AT_AGAIN: usize = 10;
 const CHARGE: f64 = 0.15;
 /// Evidence, and share of the evidence, that every step away from the plainest scale has to bring.
 const SCALE_CHARGE: (f64, f64) = (0.15, 0.01);
+/// Degrees of freedom of a curve that a person can say: a line, a saturation, a bump.
+const PLAIN: usize = 3;
+/// Share of the evidence of the best curve at which one of these is taken in its place; a further term has what it leaves.
+const NEARLY: f64 = 0.85;
 /// Rounds in which the numbers of a memory and of a bump are halved in on.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
 
 /// A sentence with what it gains on held-out blocks.
 #[derive(Debug, Clone)]
@@ -162,8 +166,11 @@ fn bent(field: &Field<'_>, found: Said) -> Said {
     let finest = best(splines.iter().cloned()).unwrap_or_else(|| found.clone());
     let bump = bump(field, &finest, &arguments, &try_curve);
     let others = [try_curve(Curve::Line), saturation(&sorted, &try_curve), bump];
-    let all = splines.into_iter().chain(others.into_iter().flatten()).chain(std::iter::once(found));
-    best(all).unwrap_or(finest)
+    let all: Vec<Said> =
+        splines.into_iter().chain(others.into_iter().flatten()).chain(std::iter::once(found)).collect();
+    let most = best(all.iter().cloned()).unwrap_or(finest);
+    let is_plain = |said: &&Said| said.sentence.shape.n_parameters() <= PLAIN && said.evidence > NEARLY * most.evidence;
+    best(all.iter().filter(is_plain).cloned()).unwrap_or(most)
 }
 
 fn saturation(sorted: &[f64], try_curve: &dyn Fn(Curve) -> Option<Said>) -> Option<Said> {

@@ -199,10 +199,8 @@ mod tests {
     fn a_model_with_it_has_the_force_and_the_slopes_that_it_needs() {
         let parameters = BaseParameters { theta: [0.9, 1.05, 2.0, 118.4e3, 105.7e3, 1.0 / 3e9, 1.2e-3, 0.0] };
         let force = ForceModel::new(&nominal(), 3e9, Form::Corrected, parameters);
-        let longer = Sentence {
-            scale: Scale::SlopeOverLength,
-            ..sentence(Curve::Spline { knots: vec![0.0, 0.1, 0.2] })
-        };
+        let longer =
+            Sentence { scale: Scale::SlopeOverLength, ..sentence(Curve::Spline { knots: vec![0.0, 0.1, 0.2] }) };
         let effect = own(&longer).expect("an effect");
         // As if the length read a tenth of a millimetre short everywhere.
         let term = Term { effect, shape: Vec::new(), amplitudes: vec![1e-4; 3] };
