@@ -11,9 +11,8 @@ use crate::artifact::{Agreement, together};
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;
 
-/// Times what is left of the fitted recordings that may be left of a held-out one, whatever the reason. A recording or two do not
-/// say what eq. 11 is elsewhere, which makes up to three of it; memory that goes on
-/// from recording to recording makes two.
+/// Times what is left of the fitted recordings that may be left of a held-out one, whatever the reason. A recording or two do
+/// not say what eq. 11 is elsewhere (2.6 times was seen of a healthy muscle), and memory goes on from recording to recording.
 const MOST: f64 = 4.0;
 
 /// Each held-out recording that the diagnosed model misses, with the reason, in words.

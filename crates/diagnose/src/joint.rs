@@ -62,16 +62,12 @@ impl HeldOut {
     /// `ln(without / with)` of every block, the sensors' floor in both, so that what is gained or lost below it counts for
     /// nothing; 0 where a block has no rows.
     pub fn log_ratios<'a>(&'a self, with: &'a Self) -> impl Iterator<Item = f64> + 'a {
-        let typical = self.mean_square().min(with.mean_square());
-        let floor = self.floor_square.max(OF_TYPICAL * typical);
+        let floor = self.floor_square;
         self.blocks.iter().zip(&with.blocks).zip(&self.counts).map(move |((before, after), &count)| {
             if count > 0.0 && *before > 0.0 && *after > 0.0 { ((before + floor) / (after + floor)).ln() } else { 0.0 }
         })
     }
 }
-
-/// Share of what a block typically leaves below which it is known no better.
-const OF_TYPICAL: f64 = 0.0;
 
 /// What is fitted.
 #[derive(Debug, Clone, Copy)]

@@ -133,7 +133,8 @@ pub fn search(
     let mut looks = 0;
     while best.state.guesses.len() < limits.max_effects {
         let (plain, mapped) = (setting.beside(&beside.plain), setting.beside(&beside.smooth));
-        let look = beside.look(&plain, &mapped, &coordinates, &seen, limits);
+        let look =
+            Look { plain: &plain, mapped: &mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
         let tried = look.trials(&best, &known)?;
         looked();
         if looks == 0 {
@@ -160,7 +161,7 @@ pub fn search(
         floor_square = floor_square.min(best.held_out.mean_square());
     }
     let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
-    let look = beside.look(plain, mapped, &coordinates, &seen, limits);
+    let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
     let mut parsimonious = Vec::new();
     while best.state.guesses.len() < limits.max_effects {
         let Some(next) = look.static_effect(&best, floor_square) else { break };
@@ -205,26 +206,13 @@ impl Beside {
     fn of(setting: &Setting<'_>, of_recordings: &Nuisance, coordinates: &Coordinates, best: &Judged) -> Option<Self> {
         let track = setting.track;
         let carried = best.state.guesses.iter().filter(|guess| guess.carried);
-        let plain = carried.fold(of_recordings.clone(), |nuisance, guess| {
-            nuisance.with_beginnings(setting.beginnings(&best.state, guess), &track.counted)
-        });
+        let plain = carried.fold(of_recordings.clone(), |nuisance, guess| setting.begun(&nuisance, &best.state, guess));
         let bare = setting.beside(&plain);
         let (smooth_square, smooth) = fitting(&bare, best, &plain.with_map(track, coordinates))?;
         let (free_square, free) = fitting(&bare, best, &plain.with_free_map(track, coordinates))?;
         // Where bends foretell nothing, there are none.
         let free = if free_square < smooth_square { free } else { smooth.clone() };
         Some(Self { plain, smooth, free })
-    }
-
-    fn look<'a>(
-        &'a self,
-        plain: &'a Setting<'a>,
-        mapped: &'a Setting<'a>,
-        coordinates: &'a Coordinates,
-        seen: &'a Seen,
-        limits: &'a Limits,
-    ) -> Look<'a> {
-        Look { plain, mapped, free: &self.free, coordinates, seen, limits }
     }
 }
 
@@ -239,8 +227,7 @@ pub(crate) fn fitting(plain: &Setting<'_>, best: &Judged, map: &Nuisance) -> Opt
         Some((again(&plain.beside(&tightened), best)?.held_out.mean_square(), tightened))
     };
     let tried: Vec<(f64, Nuisance)> = STRENGTHS.into_par_iter().filter_map(judge).collect();
-    let found = tried.into_iter().min_by(|left, right| left.0.total_cmp(&right.0))?;
-    Some(found)
+    tried.into_iter().min_by(|left, right| left.0.total_cmp(&right.0))
 }
 
 /// Share of the mean square over held-out blocks that the static map must take up to be kept.
@@ -428,12 +415,8 @@ fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Option<Judged
     let sampled = setting.sampled();
     let thin = sampled.fit_near(best.state.guesses.clone(), &best.state)?;
     let (_, guess) = trial::refine(&sampled, &thin, &chosen.guess, chosen.mean_square, 1);
-    let begun = if guess.carried {
-        let beginnings = setting.beginnings(&best.state, &guess);
-        setting.nuisance.with_beginnings(beginnings, &setting.track.counted)
-    } else {
-        setting.nuisance.clone()
-    };
+    let begun =
+        if guess.carried { setting.begun(setting.nuisance, &best.state, &guess) } else { setting.nuisance.clone() };
     let setting = &setting.beside(&begun);
     let sampled = setting.sampled();
     let mut state = trial::with(&sampled, &thin, &guess)?;

@@ -134,9 +134,7 @@ impl Ground<'_> {
         }
         columns
     }
-}
 
-impl Ground<'_> {
     /// By how much the columns of `guess` differ in every recording where the same recording went before; none of what is
     /// constant over a recording, which its tare stands for.
     pub fn beginnings(&self, sheet: &Sheet, guess: &Guess, model: &ForceModel) -> Vec<Vec<f64>> {

@@ -23,6 +23,12 @@ const SLOPE_MOVED: f64 = 0.1;
 /// How often what a recording does may have gone before it, at most.
 const LONGEST_BEFORE: f64 = 10.0;
 
+/// Range of what went before a recording, for the largest amplitude of `guess`.
+fn before(guess: &Guess) -> (f64, f64) {
+    let largest = guess.amplitudes().iter().map(|amplitude| amplitude.range.1).fold(0.0, f64::max);
+    (-LONGEST_BEFORE * largest, LONGEST_BEFORE * largest)
+}
+
 /// What every fit of a diagnosis shares.
 #[derive(Debug)]
 pub struct Setting<'a> {
@@ -279,13 +285,11 @@ impl<'a> Setting<'a> {
     /// Mean squares of `state` over held-out blocks with what `guess` leaves of what went before every recording, but without
     /// the guess itself.
     pub fn weigh_beginnings(&self, state: &State, guess: &Guess) -> Option<HeldOut> {
-        let own = guess.amplitudes().len();
-        let (rows, mut limits) = self.more(state, guess);
-        let width = rows.len() / self.track.n();
-        let rows: Vec<f64> = rows.chunks_exact(width).flat_map(|row| row[own..].iter().copied()).collect();
-        let n_before = crate::hypothesis::n_amplitudes(&state.guesses);
-        limits.drain(n_before..n_before + own);
-        let rows = state.normal.extend(&rows, width - own, 0, self.nuisance, &state.read.slopes);
+        let beginnings = self.beginnings(state, guess);
+        let mut limits = ranges(&state.guesses);
+        limits.extend(beginnings.iter().map(|_| before(guess)));
+        let rows = self.beside_rows(state, Vec::new(), &beginnings);
+        let rows = state.normal.extend(&rows, beginnings.len(), 0, self.nuisance, &state.read.slopes);
         self.joint(&limits).hold_out(&rows, &state.fit.x, &self.track.fold_of_block)
     }
 
@@ -297,30 +301,37 @@ impl<'a> Setting<'a> {
     /// Columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes; where it is carried,
     /// what it begins with in every recording stands behind them.
     fn more(&self, state: &State, guess: &Guess) -> (Vec<f64>, Vec<(f64, f64)>) {
-        let mut rows = self.ground().more_columns(&state.sheet, guess, &state.model);
+        let rows = self.ground().more_columns(&state.sheet, guess, &state.model);
         let mut limits = ranges(&state.guesses);
         limits.extend(guess.ranges());
-        let mut width = guess.amplitudes().len();
-        if guess.carried {
-            let beginnings = self.beginnings(state, guess);
-            let largest = guess.amplitudes().iter().map(|amplitude| amplitude.range.1).fold(0.0, f64::max);
-            limits.extend(beginnings.iter().map(|_| (-LONGEST_BEFORE * largest, LONGEST_BEFORE * largest)));
-            let joined = width + beginnings.len();
-            rows = (0..self.track.n())
-                .flat_map(|at| {
-                    let own = rows[at * width..(at + 1) * width].iter().copied();
-                    own.chain(beginnings.iter().map(move |column| column[at]))
-                })
-                .collect();
-            width = joined;
+        let beginnings = if guess.carried { self.beginnings(state, guess) } else { Vec::new() };
+        limits.extend(beginnings.iter().map(|_| before(guess)));
+        (self.beside_rows(state, rows, &beginnings), limits)
+    }
+
+    /// `rows` with one of `columns` after the other behind each, as much of them as the cell reads.
+    fn beside_rows(&self, state: &State, rows: Vec<f64>, columns: &[Vec<f64>]) -> Vec<f64> {
+        let n = self.track.n();
+        let width = rows.len() / n;
+        if columns.is_empty() {
+            return state.read.scaled(rows, width);
         }
-        (state.read.scaled(rows, width), limits)
+        let joined = (0..n).flat_map(|at| {
+            let own = rows[at * width..(at + 1) * width].iter().copied();
+            own.chain(columns.iter().map(move |column| column[at]))
+        });
+        state.read.scaled(joined.collect(), width + columns.len())
     }
 
     /// What `guess` leaves in every recording of what went before it: a column for each recording and amplitude, in which
     /// what went before was the same recording.
     pub(crate) fn beginnings(&self, state: &State, guess: &Guess) -> Vec<Vec<f64>> {
         self.ground().beginnings(&state.sheet, guess, &state.model)
+    }
+
+    /// `nuisance` with what `guess` leaves in every recording of what went before it.
+    pub(crate) fn begun(&self, nuisance: &Nuisance, state: &State, guess: &Guess) -> Nuisance {
+        nuisance.with_beginnings(self.beginnings(state, guess), &self.track.counted)
     }
 
     /// Residual of every instant, measured less modelled, in N.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use pam_core::effects::{CATALOGUE, Effect, Kind, Seen};
 use rayon::prelude::*;
 
-use crate::hypothesis::Guess;
+use crate::hypothesis::{Guess, n_amplitudes};
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
 use crate::steps;
@@ -156,10 +156,10 @@ pub fn among(
         })
         .collect();
     trials.sort_by(|left, right| right.log_ratio.total_cmp(&left.log_ratio));
-    let mut known: Vec<&str> = Vec::new();
+    let mut listed: Vec<&str> = Vec::new();
     trials.retain(|trial| {
-        let is_first = !known.contains(&trial.guess.id());
-        known.push(trial.guess.id());
+        let is_first = !listed.contains(&trial.guess.id());
+        listed.push(trial.guess.id());
         is_first
     });
     trials
@@ -173,7 +173,7 @@ fn weigh(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<(HeldOut
     }
     let (fit, held_out) = setting.weigh_more(state, guess)?;
     let amplitudes = guess.amplitudes();
-    let own = &fit.amplitudes[crate::hypothesis::n_amplitudes(&state.guesses)..];
+    let own = &fit.amplitudes[n_amplitudes(&state.guesses)..];
     let is_pressed = own.iter().zip(amplitudes).any(|(value, amplitude)| {
         let (low, high) = amplitude.range;
         let near = 1e-3 * (high - low);

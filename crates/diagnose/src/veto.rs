@@ -19,11 +19,10 @@ use crate::uncertainty::correlated_instants;
 
 /// Share of its size that an effect must be seen with on what was held out: half way between there and not there.
 const SEEN: f64 = 0.5;
-
-/// Pieces of the held-out recordings that stand for independent ones.
-const PIECES: usize = 16;
 /// Standard errors by which it must fall short of that: one in forty by chance.
 const SURELY: f64 = 2.0;
+/// Pieces of the held-out recordings that stand for independent ones.
+const PIECES: usize = 16;
 
 /// `found` on `track` without the effects that `heldout` says are not there.
 pub(crate) fn confirmed(question: &Question<'_>, track: &Track, mut found: Found, heldout: &Track) -> Found {
@@ -62,23 +61,42 @@ fn denied(held: &Setting<'_>, found: &Found) -> Option<usize> {
         }
         // What acts in a part of the range alone may not have been there.
         let stands = strongest == Some(index) || guess.effect.is_static();
-        let most = match share(held, state, index) {
-            Some((share, error)) if share + SURELY * error < SEEN => share + SURELY * error,
-            Some((share, error)) if stands || share - SURELY * error > 0.0 => continue,
-            Some((share, _)) => share.max(SEEN),
-            None if stands => continue,
+        let share = share(held, state, index);
+        let is_denied = share.is_some_and(|share| share.most() < SEEN);
+        let is_unseen = !stands && share.is_none_or(|share| share.least() <= 0.0);
+        // What is denied goes before what is only not seen.
+        let most = match share {
+            Some(share) if is_denied => share.most(),
+            Some(share) => share.value.max(SEEN),
             None => SEEN,
         };
-        if least.is_none_or(|(lowest, _)| most < lowest) {
+        if (is_denied || is_unseen) && least.is_none_or(|(lowest, _)| most < lowest) {
             least = Some((most, index));
         }
     }
     least.map(|(_, index)| index)
 }
 
-/// The share of its size with which effect `index` is there on what was held out, and its standard error; none where nothing can
-/// be said.
-fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<(f64, f64)> {
+/// Share of its size with which an effect is there.
+#[derive(Debug, Clone, Copy)]
+struct Share {
+    value: f64,
+    /// Standard error.
+    error: f64,
+}
+
+impl Share {
+    fn most(self) -> f64 {
+        self.value + SURELY * self.error
+    }
+
+    fn least(self) -> f64 {
+        self.value - SURELY * self.error
+    }
+}
+
+/// The share of effect `index` on what was held out; none where nothing can be said.
+fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
     let whole_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), state.terms()).without_events());
     let mut others = state.terms();
     others.remove(index);
@@ -88,7 +106,7 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<(f64, f64)> 
     let guess = &state.guesses[index];
     let nuisance = if guess.effect.outlasts() {
         let moments = held.fit(Vec::new(), &state.fit.x[..held.space.free.len()], &state.model)?;
-        held.nuisance.with_beginnings(held.beginnings(&moments, guess), &held.track.counted)
+        held.begun(held.nuisance, &moments, guess)
     } else {
         held.nuisance.clone()
     };
@@ -132,7 +150,7 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<(f64, f64)> 
     // No residual is known better than the sensors.
     let plain = correlated_instants(held, &left) * variance.max(held.floor_square) / square;
     let error = jackknife.max(plain).sqrt();
-    (share.is_finite() && error.is_finite()).then_some((share, error))
+    (share.is_finite() && error.is_finite()).then_some(Share { value: share, error })
 }
 
 /// Force that `model` predicts at every instant of `track`, in N.
@@ -157,8 +175,8 @@ mod tests {
     use super::*;
     use crate::rehearsal::tests::Given;
 
-    /// The share of a lag of 150 ms in `held`, where `fitted` has all of it, and its standard error.
-    fn seen(held: &Given, fitted: &Given) -> Option<(f64, f64)> {
+    /// The share of a lag of 150 ms in `held`, where `fitted` has all of it.
+    fn seen(held: &Given, fitted: &Given) -> Option<Share> {
         let state = fitted.setting().fit(vec![fitted.guess("pressure-lag", &[0.15])], &fitted.start, &fitted.model)?;
         let coordinates = Coordinates::of(&held.track);
         let beside = Nuisance::of_recordings(&held.track, 0.1).with_map(&held.track, &coordinates);
@@ -172,7 +190,7 @@ mod tests {
         let same = Given::of(&["multisine"], &[lag]);
         let other = Given::of(&["multisine"], &[]);
         let (confirmed, denied) = (seen(&same, &fitted).expect("a share"), seen(&other, &fitted).expect("a share"));
-        assert!((confirmed.0 - 1.0).abs() < 0.1, "{confirmed:?}");
-        assert!(denied.0 + SURELY * denied.1 < SEEN, "{denied:?}");
+        assert!((confirmed.value - 1.0).abs() < 0.1, "{confirmed:?}");
+        assert!(denied.most() < SEEN, "{denied:?}");
     }
 }

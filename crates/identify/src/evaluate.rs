@@ -376,24 +376,11 @@ pub fn trace_augmented(
 mod tests {
     use super::*;
 
-    use pam_core::force::{BaseParameters, Form};
-    use pam_core::muscle::Muscle;
+    use pam_core::force::Form;
     use pam_core::recording::{Recording, Repairs, Samples};
 
     use crate::prepare::{direct, gate};
-
-    fn model() -> ForceModel {
-        let muscle = Muscle {
-            rest_length_m: 0.267,
-            rest_radius_m: 0.010,
-            braid_angle_rad: 25.0_f64.to_radians(),
-            wall_thickness_m: 0.001,
-            strand_count: 240.0,
-            strand_diameter_m: 0.25e-3,
-        };
-        let parameters = BaseParameters { theta: [0.9, 1.05, 2.0, 118.4e3, 105.7e3, 1.0 / 3e9, 1.2e-3, 0.0] };
-        ForceModel::new(&muscle, 3e9, Form::Corrected, parameters)
-    }
+    use crate::testing::{THRESHOLDS, model};
 
     /// A muscle that shortens evenly; `length_m` of the last row is `last_m`.
     fn ramp(last_m: f64) -> Prepared {
@@ -411,13 +398,7 @@ mod tests {
             repairs: Repairs::default(),
             ignored_columns: Vec::new(),
         };
-        let thresholds = Thresholds {
-            length_m: 1e-4,
-            pressure_pa: 1e3,
-            turn_m: 0.0,
-            standstill: pam_core::direction::Standstill::AT_ONCE,
-        };
-        direct(gate(vec![recording]).unwrap(), thresholds, Form::Corrected).unwrap().remove(0)
+        direct(gate(vec![recording]).unwrap(), THRESHOLDS, Form::Corrected).unwrap().remove(0)
     }
 
     #[test]
@@ -427,13 +408,7 @@ mod tests {
         let refused = evaluate(std::slice::from_ref(&still), &model()).unwrap_err();
         assert!(matches!(refused, IdentifyError::NothingCounted { n_rows: 200, .. }), "{refused}");
         let augmented = AugmentedModel::from(model());
-        let thresholds = Thresholds {
-            length_m: 1e-4,
-            pressure_pa: 1e3,
-            turn_m: 0.0,
-            standstill: pam_core::direction::Standstill::AT_ONCE,
-        };
-        assert!(evaluate_augmented(&[still], &augmented, thresholds).is_err());
+        assert!(evaluate_augmented(&[still], &augmented, THRESHOLDS).is_err());
     }
 
     #[test]

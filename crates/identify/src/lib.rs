@@ -22,5 +22,7 @@ pub mod report;
 pub mod robust;
 pub mod search_space;
 pub mod standstill;
+#[cfg(test)]
+mod testing;
 pub mod unbounded;
 pub mod uncertainty;

@@ -20,18 +20,17 @@ use crate::prepare::Prepared;
 /// Pressures over which friction may turn over, in Pa; nothing for any change that is not noise.
 const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 
-/// The same for a travel in which friction turns over, which shows in a few samples only.
-const HARDLY: f64 = 5e-4;
-
-/// Travels in which friction may turn over, in m. No strand turns over at once; what takes longer is pre-sliding, an effect
-/// with a name.
-const TURNS_M: [f64; 4] = [1.5e-5, 3e-5, 6e-5, 1e-4];
+/// Travels in which friction may turn over, in m. What takes longer is pre-sliding, an effect with a name.
+const TURNS_M: [f64; 5] = [0.0, 1.5e-5, 3e-5, 6e-5, 1e-4];
 
 /// Rows that the laws are compared on, at most.
 const MOST_ROWS: usize = 60_000;
 
 /// Share of the mean square that a law must gain over friction that follows the pressure at once.
 const CLEARLY: f64 = 0.01;
+
+/// The same for a travel in which friction turns over, which shows in a few samples only.
+const HARDLY: f64 = 5e-4;
 
 /// Every law with what it leaves, the one to be taken first.
 ///
@@ -44,8 +43,7 @@ pub fn judge(
 ) -> Result<Vec<StandstillFit>, IdentifyError> {
     let laws: Vec<Standstill> =
         OVER_PA.map(|over_pa| Standstill::Slides { over_pa }).into_iter().chain([Standstill::Held]).collect();
-    let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
-    let stride = n_rows.div_ceil(MOST_ROWS).max(1);
+    let stride = stride(recordings);
     let judged: Result<Vec<StandstillFit>, IdentifyError> = laws
         .into_par_iter()
         .map(|standstill| {
@@ -65,22 +63,27 @@ pub fn judge(
     Ok(judged)
 }
 
-/// The travel in which friction turns over after a reversal, in m: the one of [`TURNS_M`] that leaves least of the force; none
+/// The travel in which friction turns over after a reversal, in m: the one of [`TURNS_M`] that leaves least of the force; 0
 /// where nothing is clearly gained.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn turn_m(recordings: &[Prepared], columns: &ForceColumns, thresholds: Thresholds) -> Result<f64, IdentifyError> {
-    let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
-    let stride = n_rows.div_ceil(MOST_ROWS).max(1);
-    let at_once = mean_square(recordings, columns, Thresholds { turn_m: 0.0, ..thresholds }, stride)?;
+    let stride = stride(recordings);
     let judged: Result<Vec<(f64, f64)>, IdentifyError> = TURNS_M
         .into_par_iter()
         .map(|turn_m| Ok((mean_square(recordings, columns, Thresholds { turn_m, ..thresholds }, stride)?, turn_m)))
         .collect();
     let judged = judged?;
-    let best = judged.into_iter().min_by(|left, right| left.0.total_cmp(&right.0));
-    Ok(best.filter(|(left, _)| *left < (1.0 - HARDLY) * at_once).map_or(0.0, |(_, turn_m)| turn_m))
+    let most = (1.0 - HARDLY) * judged[0].0;
+    let best = judged.into_iter().filter(|(left, _)| *left < most).min_by(|one, other| one.0.total_cmp(&other.0));
+    Ok(best.map_or(0.0, |(_, turn_m)| turn_m))
+}
+
+/// Every how many rows are looked at.
+fn stride(recordings: &[Prepared]) -> usize {
+    let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
+    n_rows.div_ceil(MOST_ROWS).max(1)
 }
 
 /// What the columns leave of the force under `thresholds`, in N².

@@ -30,15 +30,20 @@ pub struct ChannelQuality {
 }
 
 impl ChannelQuality {
+    /// Standard deviation of the noise, colored or not; models of before say nothing of its color.
+    pub fn any_noise(&self) -> f64 {
+        self.noise.max(self.colored_noise)
+    }
+
     /// Whether the channel moves by more than its noise explains.
     pub fn varies(&self) -> bool {
         // White noise covers some ten standard deviations in a million samples.
-        self.highest - self.lowest > 12.0 * self.noise.max(self.colored_noise)
+        self.highest - self.lowest > 12.0 * self.any_noise()
     }
 
     /// Five times the noise, colored or not: by how much a channel must turn back before it counts as turned.
     pub fn play_threshold(&self) -> f64 {
-        5.0 * self.noise.max(self.colored_noise)
+        5.0 * self.any_noise()
     }
 }
 

@@ -287,18 +287,7 @@ mod tests {
     use pam_core::force::{BaseParameters, Form};
     use pam_core::muscle::Muscle;
 
-    fn model() -> ForceModel {
-        let muscle = Muscle {
-            rest_length_m: 0.267,
-            rest_radius_m: 0.010,
-            braid_angle_rad: 25.0_f64.to_radians(),
-            wall_thickness_m: 0.001,
-            strand_count: 240.0,
-            strand_diameter_m: 0.25e-3,
-        };
-        let parameters = BaseParameters { theta: [0.9, 1.05, 2.0, 118.4e3, 105.7e3, 1.0 / 3e9, 1.2e-3, 0.0] };
-        ForceModel::new(&muscle, 3e9, Form::Corrected, parameters)
-    }
+    use crate::testing::model;
 
     /// Pressure and length that wander apart from one another, read by instruments that do `wrong` to them and to the force.
     fn read(wrong: impl Fn(f64, [f64; 3]) -> [f64; 3]) -> Trace {

@@ -1,265 +1,37 @@
-//! Direction in which friction acts: +1 after contracting, -1 after extending, and between the two while it turns over.
-//!
-//! Friction changes sign with the direction of motion, which a noisy velocity cannot give. The direction is therefore
-//! a *play* on the length: it flips once the length has turned back by a threshold.
-//!
-//! In a recording the future is known, so a flip is dated back to where the motion turned. How exactly that
-//! is known depends on the noise: around it the direction is *unsettled*, and a fit does not count those
-//! samples, as little as those of a sensor that is out of its range.
-//!
-//! A turn is the vertex of the parabola or the corner of the two lines that describe the length around it, whichever leaves
-//! less: the play alone notices it a threshold late. Behind it friction goes from one sign to the other within a travel of
-//! some tens of micrometres ([`Thresholds::turn_m`]), which no strand is without.
-//!
-//! What friction does where the length stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
-//! keeps its last sign, or the strands slide under rising (+1, as if contracting) and falling pressure (-1), at once or only
-//! after the pressure has turned back by some amount. At the beginning of a segment nothing is known of it until the first
-//! motion: the state is zero there and the samples are unsettled. In a segment in which nothing ever moves it stays zero, and
-//! its samples count.
-//!
-//! # Design
-//! The play acts on a centered moving average, because the range that white noise covers grows without end:
-//! five standard deviations of the raw channel would flip within seconds of a hold. Five of the raw channel
-//! are at least eleven of the average over [`WINDOW_S`] or five samples.
+//! State of friction along rows without a gap: what the play on the length, the pressure at a standstill and the travel since
+//! a turn say of it.
 
-use std::io;
+use std::ops::Range;
 
-use nalgebra::{Matrix3, Vector3};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use crate::recording::{CHUNK_ROWS, Recording};
+use super::turn::{NOISE, Turn};
+use super::{Driver, Standstill, Thresholds};
 
 /// Length of the moving average, in s; at least five samples and at most 101 are averaged.
 pub const WINDOW_S: f64 = 0.05;
 /// How long the length must stand still before pressure takes its place, in s.
 pub const STANDSTILL_S: f64 = 1.0;
-/// Rows that are worked on at a time; memory across a border between two is a state and an extreme.
-const STRETCH_ROWS: usize = 1 << 18;
-
-/// What friction does while the length stands still.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Standstill {
-    /// It keeps the sign of the last motion, whatever the pressure does.
-    Held,
-    /// It follows the pressure, and has turned over once the pressure has turned back by so much.
-    Slides {
-        /// From one sign to the other, in Pa.
-        over_pa: f64,
-    },
-}
-
-impl Standstill {
-    /// Turned over by any change of the pressure that is not noise.
-    pub const AT_ONCE: Self = Self::Slides { over_pa: 0.0 };
-
-    /// In words.
-    pub fn words(self) -> String {
-        match self {
-            Self::Held => "friction is held at standstill".to_owned(),
-            Self::Slides { over_pa } if over_pa > 0.0 => {
-                format!("friction at standstill turns over with {:.1} kPa of pressure", over_pa * 1e-3)
-            }
-            Self::Slides { .. } => "friction at standstill follows the pressure".to_owned(),
-        }
-    }
-}
-
-/// How the direction is found.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Thresholds {
-    /// By how much the length turns back before the direction flips, in m.
-    pub length_m: f64,
-    /// Likewise for the pressure, where the length stands still, in Pa.
-    pub pressure_pa: f64,
-    /// Travel in which friction turns over after a reversal, in m; models that do not say turn over at once.
-    #[serde(default)]
-    pub turn_m: f64,
-    /// What friction does while the length stands still; models that do not say follow the pressure at once.
-    #[serde(default = "at_once")]
-    pub standstill: Standstill,
-}
-
-fn at_once() -> Standstill {
-    Standstill::AT_ONCE
-}
-
-/// What the direction follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Driver {
-    /// The length, and the pressure where the length stands still.
-    Motion,
-    /// The pressure alone: "inflation" and "deflation" as the paper prints them.
-    Pressure,
-}
-
-/// Direction of every row of a recording.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Direction {
-    /// In hundredths.
-    states: Vec<i8>,
-    settled: Vec<bool>,
-    /// Whether the direction is known at all: some motion came before it in its segment.
-    known: Vec<bool>,
-}
-
-/// Beginnings that are tried on either side of zero.
-const BEGINNINGS: i32 = 20;
-/// Hundredths of a state.
-const STEPS: f64 = 100.0;
-
-impl Direction {
-    /// Directions of `recording`.
-    ///
-    /// # Errors
-    /// Where the samples cannot be read back.
-    pub fn of(recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
-        let n_rows = recording.samples.n_rows();
-        let mut all = Self {
-            states: Vec::with_capacity(n_rows),
-            settled: Vec::with_capacity(n_rows),
-            known: Vec::with_capacity(n_rows),
-        };
-        for segment in &recording.segments {
-            let mut carried = Bounds::UNKNOWN;
-            let first = all.states.len();
-            for start in segment.clone().step_by(STRETCH_ROWS) {
-                let end = (start + STRETCH_ROWS).min(segment.end);
-                let (time_s, pressure_pa, length_m) = rows(recording, start, end)?;
-                let stretch = states_of(&time_s, &pressure_pa, &length_m, thresholds, driver, carried);
-                carried = stretch.last().map_or(carried, |state| state.bounds);
-                for State { bounds, is_settled } in stretch {
-                    all.states.push((STEPS * bounds.middle()).round() as i8);
-                    all.settled.push(is_settled && bounds.is_known());
-                    all.known.push(bounds.is_known());
-                }
-            }
-            // Friction that nothing ever moves is none that could be told from a constant force.
-            if !all.known[first..].contains(&true) {
-                all.known[first..].fill(true);
-                all.settled[first..].fill(true);
-            }
-        }
-        Ok(all)
-    }
-
-    /// Direction of a row, in [-1, 1]; 0 where it is not known.
-    pub fn sign(&self, row: usize) -> f64 {
-        f64::from(self.states[row]) / STEPS
-    }
-
-    /// Whether the direction of a row is certain and the row was not left out.
-    pub fn is_settled(&self, row: usize) -> bool {
-        self.settled[row]
-    }
-
-    /// Whether anything has moved since the segment of a row began.
-    pub fn is_known(&self, row: usize) -> bool {
-        self.known[row]
-    }
-
-    /// The same with what friction was at the beginning of every segment of `recording`, of which nothing is known but the force
-    /// recorded there: among all beginnings the one under which `force_n` (of pressure, length and state) comes nearest to
-    /// it. The samples stay unsettled. None where everything is known or no force was recorded.
-    ///
-    /// # Errors
-    /// Where the samples cannot be read back.
-    pub fn begun(
-        &self,
-        recording: &Recording,
-        standstill: Standstill,
-        force_n: &dyn Fn(f64, f64, f64) -> f64,
-    ) -> io::Result<Option<Self>> {
-        if !recording.samples.has_force() || self.known.iter().all(|known| *known) {
-            return Ok(None);
-        }
-        let mut begun = self.clone();
-        for segment in &recording.segments {
-            let unknown = self.known[segment.clone()].iter().take_while(|known| !**known).count();
-            let unknown = segment.start..segment.start + unknown;
-            if unknown.is_empty() {
-                continue;
-            }
-            let (mut pressure_pa, mut without_n, mut with_n) = (Vec::new(), Vec::new(), Vec::new());
-            for index in unknown.start / CHUNK_ROWS..unknown.end.div_ceil(CHUNK_ROWS) {
-                let chunk = recording.samples.chunk(index)?;
-                let from = unknown.start.max(chunk.first_row()) - chunk.first_row();
-                let to = unknown.end.min(chunk.first_row() + chunk.n_rows()) - chunk.first_row();
-                for row in from..to {
-                    let (pressure, length) = (chunk.pressure_pa()[row], chunk.length_m()[row]);
-                    let neither_n = force_n(pressure, length, 0.0);
-                    pressure_pa.push(pressure);
-                    without_n.push(chunk.force_n()[row] - neither_n);
-                    with_n.push(force_n(pressure, length, 1.0) - neither_n);
-                }
-            }
-            let left = |states: &[State]| -> f64 {
-                let rows = states.iter().zip(without_n.iter().zip(&with_n));
-                rows.map(|(state, (without, with))| (without - state.bounds.middle() * with).powi(2)).sum()
-            };
-            let beginnings = (-BEGINNINGS..=BEGINNINGS).map(|index| f64::from(index) / f64::from(BEGINNINGS));
-            let paths = beginnings.map(|state| {
-                let mut states = vec![State { bounds: Bounds::at(state), is_settled: false }; unknown.len()];
-                if let Standstill::Slides { over_pa } = standstill
-                    && over_pa > 0.0
-                {
-                    slide(&moving_average(&pressure_pa, 2), over_pa, Bounds::at(state), &mut states);
-                }
-                (left(&states), states)
-            });
-            if let Some((least, states)) = paths.min_by(|one, other| one.0.total_cmp(&other.0))
-                && least.is_finite()
-            {
-                for (row, state) in unknown.zip(states) {
-                    begun.states[row] = (STEPS * state.bounds.middle()).round() as i8;
-                }
-            }
-        }
-        Ok(Some(begun))
-    }
-
-    /// Leaves `rows` out, whose directions stay what they are.
-    ///
-    /// # Panics
-    /// Where there are not that many rows.
-    pub fn leave_out(&mut self, rows: std::ops::Range<usize>) {
-        self.settled[rows].fill(false);
-    }
-
-    /// Rows whose direction is not certain or that were left out.
-    pub fn n_unsettled(&self) -> usize {
-        self.settled.iter().filter(|settled| !**settled).count()
-    }
-
-    /// Times that the direction flips.
-    pub fn n_reversals(&self) -> usize {
-        self.states.windows(2).filter(|pair| pair[0].signum() * pair[1].signum() < 0).count()
-    }
-}
 
 /// Between what the state of friction must lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Bounds {
+pub(super) struct Bounds {
     low: f64,
     high: f64,
 }
 
 impl Bounds {
-    const UNKNOWN: Self = Self { low: -1.0, high: 1.0 };
+    pub(super) const UNKNOWN: Self = Self { low: -1.0, high: 1.0 };
     /// Bounds that are closer than this are a state.
     const CLOSE: f64 = 0.2;
 
-    fn at(state: f64) -> Self {
+    pub(super) fn at(state: f64) -> Self {
         Self { low: state, high: state }
     }
 
-    fn middle(self) -> f64 {
+    pub(super) fn middle(self) -> f64 {
         0.5 * (self.low + self.high)
     }
 
-    fn is_known(self) -> bool {
+    pub(super) fn is_known(self) -> bool {
         self.high - self.low < Self::CLOSE
     }
 
@@ -276,29 +48,13 @@ impl Bounds {
 
 /// State of friction at one row.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct State {
-    bounds: Bounds,
-    is_settled: bool,
-}
-
-type Columns = (Vec<f64>, Vec<f64>, Vec<f64>);
-
-/// Time, pressure and length of rows `start..end`.
-fn rows(recording: &Recording, start: usize, end: usize) -> io::Result<Columns> {
-    let (mut time_s, mut pressure_pa, mut length_m) = (Vec::new(), Vec::new(), Vec::new());
-    for index in start / CHUNK_ROWS..end.div_ceil(CHUNK_ROWS) {
-        let chunk = recording.samples.chunk(index)?;
-        let from = start.max(chunk.first_row()) - chunk.first_row();
-        let to = end.min(chunk.first_row() + chunk.n_rows()) - chunk.first_row();
-        time_s.extend_from_slice(&chunk.time_s()[from..to]);
-        pressure_pa.extend_from_slice(&chunk.pressure_pa()[from..to]);
-        length_m.extend_from_slice(&chunk.length_m()[from..to]);
-    }
-    Ok((time_s, pressure_pa, length_m))
+pub(super) struct State {
+    pub(super) bounds: Bounds,
+    pub(super) is_settled: bool,
 }
 
 /// States of consecutive rows without a gap; `carried` is the one before them.
-fn states_of(
+pub(super) fn states_of(
     time_s: &[f64],
     pressure_pa: &[f64],
     length_m: &[f64],
@@ -323,16 +79,13 @@ fn states_of(
     play(&contraction, &shortening, thresholds.length_m, half, carried.sign(), &mut marks);
     let pressure = moving_average(pressure_pa, half);
     let resting = standstills(time_s, &contraction, thresholds.length_m);
-    let moved = |still: &std::ops::Range<usize>| range(&pressure[still.clone()]) > thresholds.pressure_pa;
-    let resting: Vec<(std::ops::Range<usize>, bool)> =
-        resting.into_iter().map(|still| (still.clone(), moved(&still))).collect();
-    let pushed: Vec<std::ops::Range<usize>> =
-        resting.iter().filter(|(_, moved)| *moved).map(|(still, _)| still.clone()).collect();
+    let moved = |still: &&Range<usize>| range(&pressure[(*still).clone()]) > thresholds.pressure_pa;
+    let pushed: Vec<Range<usize>> = resting.iter().filter(moved).cloned().collect();
     if let Standstill::Slides { over_pa } = thresholds.standstill
         && over_pa <= 2.0 * thresholds.pressure_pa
     {
         // A standstill in which the pressure rests as well keeps what the length says.
-        for (still, _) in resting.iter().filter(|(_, moved)| *moved) {
+        for still in &pushed {
             let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried.sign() };
             let (smooth, raw) = (&pressure[still.clone()], &pressure_pa[still.clone()]);
             marks[still.clone()].fill(0);
@@ -341,14 +94,13 @@ fn states_of(
             marks[still.end..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
         }
     }
-    let stills: Vec<std::ops::Range<usize>> = resting.iter().map(|(still, _)| still.clone()).collect();
     let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
-    slow.doubt(&stills, thresholds, &mut marks);
+    slow.doubt(&resting, thresholds, &mut marks);
     let mut states = from_marks(&marks, carried);
     if let Standstill::Slides { over_pa } = thresholds.standstill
         && over_pa > 2.0 * thresholds.pressure_pa
     {
-        for (still, _) in resting.into_iter().filter(|(_, moved)| *moved) {
+        for still in &pushed {
             let before = if still.start > 0 { states[still.start - 1].bounds } else { carried };
             slide(&pressure[still.clone()], over_pa, before, &mut states[still.clone()]);
             let after = states[still.end - 1];
@@ -357,21 +109,15 @@ fn states_of(
         }
     }
     if thresholds.turn_m > 0.0 {
-        let pushed = if thresholds.standstill == Standstill::Held { Vec::new() } else { pushed };
-        turn_over(&contraction, thresholds.turn_m, carried, &pushed, &mut states);
+        let pushed = if thresholds.standstill == Standstill::Held { &[][..] } else { &pushed };
+        turn_over(&contraction, thresholds.turn_m, carried, pushed, &mut states);
     }
     states
 }
 
 /// Lets the states follow the travel of the smooth `contraction`, from where they are to the sign of the motion within
 /// `turn_m`; over the stretches `pushed` the pressure moves it.
-fn turn_over(
-    contraction: &[f64],
-    turn_m: f64,
-    carried: Bounds,
-    pushed: &[std::ops::Range<usize>],
-    states: &mut [State],
-) {
+fn turn_over(contraction: &[f64], turn_m: f64, carried: Bounds, pushed: &[Range<usize>], states: &mut [State]) {
     let mut pushed = pushed.iter().peekable();
     let mut state = carried.is_known().then(|| carried.middle());
     let mut sign = carried.sign();
@@ -411,7 +157,7 @@ fn from_marks(marks: &[i8], carried: Bounds) -> Vec<State> {
 
 /// Friction at a standstill that follows the smooth `pressure`: a stop that gives way from one sign to the other over
 /// `over_pa`. What it was before the standstill need not be known: once the pressure has moved far enough, it is.
-fn slide(pressure: &[f64], over_pa: f64, before: Bounds, states: &mut [State]) {
+pub(super) fn slide(pressure: &[f64], over_pa: f64, before: Bounds, states: &mut [State]) {
     let mut bounds = before;
     let mut last_pa = pressure[0];
     for (state, &pressure_pa) in states.iter_mut().zip(pressure) {
@@ -440,7 +186,7 @@ struct Slow<'a> {
 
 impl Slow<'_> {
     /// Unsettles such rows.
-    fn doubt(&self, resting: &[std::ops::Range<usize>], thresholds: Thresholds, marks: &mut [i8]) {
+    fn doubt(&self, resting: &[Range<usize>], thresholds: Thresholds, marks: &mut [i8]) {
         let n = self.contraction.len();
         if n <= 2 * self.long {
             return;
@@ -478,7 +224,7 @@ fn range(values: &[f64]) -> f64 {
 }
 
 /// Centered average over `2 half + 1` values, over fewer and still centered at the ends.
-fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
+pub(super) fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
     // Sums relative to the first value, so that a long recording loses no digits.
     let origin = values[0];
     let mut sums = Vec::with_capacity(values.len() + 1);
@@ -581,98 +327,9 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
     }
 }
 
-/// Deviations of the noise in a threshold.
-const NOISE: f64 = 0.2;
-
-/// Where a path turns: the vertex of the parabola or the corner of the two lines that describe it around there, whichever
-/// leaves less.
-struct Turn {
-    row: usize,
-    /// Rows by which that may be wrong: three deviations, and one row.
-    doubt: usize,
-}
-
-impl Turn {
-    /// Most values that are fitted to.
-    const MOST_VALUES: usize = 96;
-    /// Times that the window is centered on the turn that was found.
-    const ROUNDS: usize = 3;
-
-    /// The turn around `row` of `raw`, behind which it goes the way of `sign`, from as many rows on either side.
-    /// `threshold` is five deviations of the noise. None where there is none.
-    fn of(raw: &[f64], row: usize, reach: usize, sign: i8, threshold: f64) -> Option<Self> {
-        let noise = NOISE * threshold;
-        let mut row = row;
-        let mut doubt = 0.0;
-        for _ in 0..Self::ROUNDS {
-            let reach = reach.min(row).min(raw.len() - 1 - row);
-            if reach < 4 {
-                return None;
-            }
-            let values = &raw[row - reach..=row + reach];
-            let stride = values.len().div_ceil(Self::MOST_VALUES);
-            let (vertex, corner) = (vertex(values, stride), corner(values, stride, f64::from(sign)));
-            // Of either the deviation where noise of that size lies on so many values.
-            let per_value = noise * (stride as f64 / reach as f64).sqrt();
-            let at = match (vertex, corner) {
-                (Some((left, at, bend)), other)
-                    if bend * f64::from(sign) > 0.0 && other.is_none_or(|(other, ..)| left < other) =>
-                {
-                    doubt = per_value / (bend * reach as f64);
-                    at
-                }
-                (_, Some((_, at, bend))) => {
-                    doubt = 2.0 * per_value / bend;
-                    at as f64
-                }
-                _ => return None,
-            };
-            row = (row - reach) + at.clamp(0.0, 2.0 * reach as f64).round() as usize;
-        }
-        Some(Self { row, doubt: (3.0 * doubt.abs()).ceil() as usize + 1 })
-    }
-}
-
-/// The parabola through `values`: squares that it leaves, its vertex in values from the first, its slope per value and value.
-fn vertex(values: &[f64], stride: usize) -> Option<(f64, f64, f64)> {
-    let middle = (values.len() / 2) as f64;
-    let (left, weights) = fit(values, stride, values[0], |at| Vector3::new(1.0, at - middle, (at - middle).powi(2)))?;
-    let bend = 2.0 * weights[2];
-    let at = middle - weights[1] / bend;
-    at.is_finite().then_some((left, at, bend))
-}
-
-/// The two lines through `values` that meet where they leave least and turn there the way of `sign`: squares that they leave,
-/// the corner, the change of the slope.
-fn corner(values: &[f64], stride: usize, sign: f64) -> Option<(f64, usize, f64)> {
-    let n = values.len();
-    let lines = |corner: usize| {
-        let from = corner as f64;
-        let row = |at: f64| Vector3::new(1.0, (at - from).min(0.0), (at - from).max(0.0));
-        fit(values, stride, values[corner], row).map(|(left, weights)| (left, corner, weights))
-    };
-    let corners = (n / 4..=n - 1 - n / 4).step_by(stride).filter_map(lines);
-    let (left, corner, weights) = corners.min_by(|one, other| one.0.total_cmp(&other.0))?;
-    let (before, behind) = (sign * weights[1], sign * weights[2]);
-    (behind > 0.0 && before < 0.3 * behind).then_some((left, corner, behind - before))
-}
-
-/// Least squares of every `stride`-th of `values` less `origin`: squares that are left, and weights.
-fn fit(values: &[f64], stride: usize, origin: f64, row: impl Fn(f64) -> Vector3<f64>) -> Option<(f64, Vector3<f64>)> {
-    let (mut normal, mut right, mut squares) = (Matrix3::zeros(), Vector3::zeros(), 0.0);
-    for (at, value) in values.iter().enumerate().step_by(stride) {
-        let (row, value) = (row(at as f64), value - origin);
-        normal += row * row.transpose();
-        right += row * value;
-        squares += value * value;
-    }
-    let weights = normal.cholesky()?.solve(&right);
-    Some((squares - weights.dot(&right), weights))
-}
-
 /// Stretches of at least [`STANDSTILL_S`] in which the values stay within half a threshold of where the
 /// stretch began.
-fn standstills(time_s: &[f64], values: &[f64], threshold: f64) -> Vec<std::ops::Range<usize>> {
+fn standstills(time_s: &[f64], values: &[f64], threshold: f64) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = 0;
     let (mut low, mut high) = (values[0], values[0]);

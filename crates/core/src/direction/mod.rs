@@ -1,0 +1,268 @@
+//! Direction in which friction acts: +1 after contracting, -1 after extending, and between the two while it turns over.
+//!
+//! Friction changes sign with the direction of motion, which a noisy velocity cannot give. The direction is therefore
+//! a *play* on the length: it flips once the length has turned back by a threshold.
+//!
+//! In a recording the future is known, so a flip is dated back to where the motion turned. How exactly that
+//! is known depends on the noise: around it the direction is *unsettled*, and a fit does not count those
+//! samples, as little as those of a sensor that is out of its range.
+//!
+//! A turn is the vertex of the parabola or the corner of the two lines that describe the length around it, whichever leaves
+//! less: the play alone notices it a threshold late. Behind it friction goes from one sign to the other within a travel of
+//! some tens of micrometers ([`Thresholds::turn_m`]), which no strand is without.
+//!
+//! What friction does where the length stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
+//! keeps its last sign, or the strands slide under rising (+1, as if contracting) and falling pressure (-1), at once or only
+//! after the pressure has turned back by some amount. At the beginning of a segment nothing is known of it until the first
+//! motion: the state is zero there and the samples are unsettled. In a segment in which nothing ever moves it stays zero, and
+//! its samples count.
+//!
+//! # Design
+//! The play acts on a centered moving average, because the range that white noise covers grows without end:
+//! five standard deviations of the raw channel would flip within seconds of a hold. Five of the raw channel
+//! are at least eleven of the average over [`WINDOW_S`] or five samples.
+
+use std::io;
+use std::ops::Range;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::recording::{CHUNK_ROWS, Chunk, Recording};
+
+mod states;
+mod turn;
+
+use states::{Bounds, State, moving_average, slide, states_of};
+
+pub use states::{STANDSTILL_S, WINDOW_S};
+
+/// Rows that are worked on at a time; memory across a border between two is a state and an extreme.
+const STRETCH_ROWS: usize = 1 << 18;
+
+/// What friction does while the length stands still.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Standstill {
+    /// It keeps the sign of the last motion, whatever the pressure does.
+    Held,
+    /// It follows the pressure, and has turned over once the pressure has turned back by so much.
+    Slides {
+        /// From one sign to the other, in Pa.
+        over_pa: f64,
+    },
+}
+
+impl Standstill {
+    /// Turned over by any change of the pressure that is not noise.
+    pub const AT_ONCE: Self = Self::Slides { over_pa: 0.0 };
+
+    /// In words.
+    pub fn words(self) -> String {
+        match self {
+            Self::Held => "friction is held at standstill".to_owned(),
+            Self::Slides { over_pa } if over_pa > 0.0 => {
+                format!("friction at standstill turns over with {:.1} kPa of pressure", over_pa * 1e-3)
+            }
+            Self::Slides { .. } => "friction at standstill follows the pressure".to_owned(),
+        }
+    }
+}
+
+/// How the direction is found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Thresholds {
+    /// By how much the length turns back before the direction flips, in m.
+    pub length_m: f64,
+    /// Likewise for the pressure, where the length stands still, in Pa.
+    pub pressure_pa: f64,
+    /// Travel in which friction turns over after a reversal, in m; models that do not say turn over at once.
+    #[serde(default)]
+    pub turn_m: f64,
+    /// What friction does while the length stands still; models that do not say follow the pressure at once.
+    #[serde(default = "at_once")]
+    pub standstill: Standstill,
+}
+
+fn at_once() -> Standstill {
+    Standstill::AT_ONCE
+}
+
+/// What the direction follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Driver {
+    /// The length, and the pressure where the length stands still.
+    Motion,
+    /// The pressure alone: "inflation" and "deflation" as the paper prints them.
+    Pressure,
+}
+
+/// Direction of every row of a recording.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Direction {
+    /// In hundredths.
+    states: Vec<i8>,
+    settled: Vec<bool>,
+    /// Whether the direction is known at all: some motion came before it in its segment.
+    known: Vec<bool>,
+}
+
+/// Beginnings that are tried on either side of zero.
+const BEGINNINGS: i32 = 20;
+/// Hundredths of a state.
+const STEPS: f64 = 100.0;
+
+impl Direction {
+    /// Directions of `recording`.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of(recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
+        let n_rows = recording.samples.n_rows();
+        let mut all = Self {
+            states: Vec::with_capacity(n_rows),
+            settled: Vec::with_capacity(n_rows),
+            known: Vec::with_capacity(n_rows),
+        };
+        for segment in &recording.segments {
+            let mut carried = Bounds::UNKNOWN;
+            let first = all.states.len();
+            for start in segment.clone().step_by(STRETCH_ROWS) {
+                let end = (start + STRETCH_ROWS).min(segment.end);
+                let (time_s, pressure_pa, length_m) = rows(recording, &(start..end))?;
+                let stretch = states_of(&time_s, &pressure_pa, &length_m, thresholds, driver, carried);
+                carried = stretch.last().map_or(carried, |state| state.bounds);
+                for State { bounds, is_settled } in stretch {
+                    all.states.push((STEPS * bounds.middle()).round() as i8);
+                    all.settled.push(is_settled && bounds.is_known());
+                    all.known.push(bounds.is_known());
+                }
+            }
+            // Friction that nothing ever moves is none that could be told from a constant force.
+            if !all.known[first..].contains(&true) {
+                all.known[first..].fill(true);
+                all.settled[first..].fill(true);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Direction of a row, in [-1, 1]; 0 where it is not known.
+    pub fn sign(&self, row: usize) -> f64 {
+        f64::from(self.states[row]) / STEPS
+    }
+
+    /// Whether the direction of a row is certain and the row was not left out.
+    pub fn is_settled(&self, row: usize) -> bool {
+        self.settled[row]
+    }
+
+    /// Whether anything has moved since the segment of a row began.
+    pub fn is_known(&self, row: usize) -> bool {
+        self.known[row]
+    }
+
+    /// The same with what friction was at the beginning of every segment of `recording`, of which nothing is known but the force
+    /// recorded there: among all beginnings the one under which `force_n` (of pressure, length and state) comes nearest to
+    /// it. The samples stay unsettled. None where everything is known or no force was recorded.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn begun(
+        &self,
+        recording: &Recording,
+        standstill: Standstill,
+        force_n: &dyn Fn(f64, f64, f64) -> f64,
+    ) -> io::Result<Option<Self>> {
+        if !recording.samples.has_force() || self.known.iter().all(|known| *known) {
+            return Ok(None);
+        }
+        let mut begun = self.clone();
+        for segment in &recording.segments {
+            let unknown = self.known[segment.clone()].iter().take_while(|known| !**known).count();
+            let unknown = segment.start..segment.start + unknown;
+            if unknown.is_empty() {
+                continue;
+            }
+            let (mut pressure_pa, mut without_n, mut with_n) = (Vec::new(), Vec::new(), Vec::new());
+            for_chunks(recording, &unknown, |chunk, rows| {
+                for row in rows {
+                    let (pressure, length) = (chunk.pressure_pa()[row], chunk.length_m()[row]);
+                    let neither_n = force_n(pressure, length, 0.0);
+                    pressure_pa.push(pressure);
+                    without_n.push(chunk.force_n()[row] - neither_n);
+                    with_n.push(force_n(pressure, length, 1.0) - neither_n);
+                }
+            })?;
+            let smooth_pa = moving_average(&pressure_pa, 2);
+            let left = |states: &[State]| -> f64 {
+                let rows = states.iter().zip(without_n.iter().zip(&with_n));
+                rows.map(|(state, (without, with))| (without - state.bounds.middle() * with).powi(2)).sum()
+            };
+            let beginnings = (-BEGINNINGS..=BEGINNINGS).map(|index| f64::from(index) / f64::from(BEGINNINGS));
+            let paths = beginnings.map(|state| {
+                let mut states = vec![State { bounds: Bounds::at(state), is_settled: false }; unknown.len()];
+                if let Standstill::Slides { over_pa } = standstill
+                    && over_pa > 0.0
+                {
+                    slide(&smooth_pa, over_pa, Bounds::at(state), &mut states);
+                }
+                (left(&states), states)
+            });
+            if let Some((least, states)) = paths.min_by(|one, other| one.0.total_cmp(&other.0))
+                && least.is_finite()
+            {
+                for (row, state) in unknown.zip(states) {
+                    begun.states[row] = (STEPS * state.bounds.middle()).round() as i8;
+                }
+            }
+        }
+        Ok(Some(begun))
+    }
+
+    /// Leaves `rows` out, whose directions stay what they are.
+    ///
+    /// # Panics
+    /// Where there are not that many rows.
+    pub fn leave_out(&mut self, rows: Range<usize>) {
+        self.settled[rows].fill(false);
+    }
+
+    /// Rows whose direction is not certain or that were left out.
+    pub fn n_unsettled(&self) -> usize {
+        self.settled.iter().filter(|settled| !**settled).count()
+    }
+
+    /// Times that the direction flips.
+    pub fn n_reversals(&self) -> usize {
+        self.states.windows(2).filter(|pair| pair[0].signum() * pair[1].signum() < 0).count()
+    }
+}
+
+/// Calls `visit` with every chunk that has some of `rows` of `recording`, and which of its own rows those are.
+fn for_chunks(
+    recording: &Recording,
+    rows: &Range<usize>,
+    mut visit: impl FnMut(&Chunk, Range<usize>),
+) -> io::Result<()> {
+    for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
+        let chunk = recording.samples.chunk(index)?;
+        let (first, n) = (chunk.first_row(), chunk.n_rows());
+        visit(&chunk, rows.start.max(first) - first..rows.end.min(first + n) - first);
+    }
+    Ok(())
+}
+
+type Columns = (Vec<f64>, Vec<f64>, Vec<f64>);
+
+/// Time, pressure and length of `rows`.
+fn rows(recording: &Recording, rows: &Range<usize>) -> io::Result<Columns> {
+    let (mut time_s, mut pressure_pa, mut length_m) = (Vec::new(), Vec::new(), Vec::new());
+    for_chunks(recording, rows, |chunk, rows| {
+        time_s.extend_from_slice(&chunk.time_s()[rows.clone()]);
+        pressure_pa.extend_from_slice(&chunk.pressure_pa()[rows.clone()]);
+        length_m.extend_from_slice(&chunk.length_m()[rows]);
+    })?;
+    Ok((time_s, pressure_pa, length_m))
+}
