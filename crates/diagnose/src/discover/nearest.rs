@@ -21,14 +21,14 @@ pub(super) fn nearest(found: &Found, with: &HeldOut) -> Vec<NearestEffect> {
             let (without_n, with_n) = (whole.mean_square().sqrt(), with.mean_square().sqrt());
             let harmed = whole.log_ratios(&trial.held_out).filter(|ratio| *ratio < -0.05).count();
             let against = if left_n >= without_n {
-                format!("fitted in its place it leaves {left_n:.2} N of held-out blocks, more than nothing does ({without_n:.2} N)")
+                format!("cross-validated RMSE {left_n:.2} N, no better than without it ({without_n:.2} N)")
             } else {
                 let blocks = if harmed > 0 {
-                    format!(", and makes {harmed} of {} blocks worse", trial.held_out.blocks.len())
+                    format!("; {harmed} of {} blocks become worse", trial.held_out.blocks.len())
                 } else {
                     String::new()
                 };
-                format!("fitted in its place it leaves {left_n:.2} N of held-out blocks, where the term leaves {with_n:.2} N{blocks}")
+                format!("cross-validated RMSE {left_n:.2} N, where the empirical terms leave {with_n:.2} N{blocks}")
             };
             NearestEffect { id: trial.guess.id().to_owned(), rmse_with_n: left_n, against }
         })

@@ -31,15 +31,15 @@ pub(super) fn in_short(sentence: &Sentence) -> String {
     let of = remembered(sentence);
     match sentence.scale {
         Scale::One => of,
-        Scale::Direction => format!("{of}, with the sign of the direction"),
+        Scale::Direction => format!("{of}, reversing sign with the direction"),
         Scale::Contracting => format!("{of}, while contracting"),
         Scale::Extending => format!("{of}, while extending"),
         Scale::SlopeOverPressure => format!("{of}, as an error of the pressure"),
         Scale::SlopeOverLength => format!("{of}, as an error of the length"),
-        Scale::Pressure => format!("{of}, in proportion to the pressure"),
-        Scale::GasForce => format!("{of}, in proportion to the force of the gas"),
-        Scale::BladderForce => format!("{of}, in proportion to the force of the bladder"),
-        Scale::Friction => format!("{of}, in proportion to friction"),
+        Scale::Pressure => format!("{of}, proportional to the pressure"),
+        Scale::GasForce => format!("{of}, proportional to the gas force"),
+        Scale::BladderForce => format!("{of}, proportional to the bladder force"),
+        Scale::Friction => format!("{of}, proportional to friction"),
     }
 }
 
@@ -59,25 +59,25 @@ fn remembered(sentence: &Sentence) -> String {
     match sentence.memory {
         Recall::None => driver.to_owned(),
         Recall::Lag { time_constant_s } => {
-            format!("how far {driver} is ahead of a lag of {} s behind it", rounded(time_constant_s))
+            format!("the recent change of {driver} (time constant {} s)", rounded(time_constant_s))
         }
         Recall::TwoLags { time_constants_s } => {
             let [first, second] = time_constants_s.map(rounded);
-            format!("how far {driver} is ahead of two lags of {first} and {second} s behind it")
+            format!("the recent change of {driver} (two time constants, {first} and {second} s)")
         }
         Recall::Play { half_width } => {
             format!(
-                "which side of a play of {} {driver} lies on",
+                "the position of {driver} within a backlash of {}",
                 quantity(2.0 * half_width, sentence.driver.unit(), &sentence.driver)
             )
         }
         Recall::Dahl { distance } => {
             let within = quantity(distance, sentence.driver.unit(), &sentence.driver);
-            format!("the way that {driver} came, which turns over within {within}")
+            format!("the direction of {driver}, turning over within {within}")
         }
-        Recall::Largest => format!("how far {driver} is below its largest so far"),
-        Recall::Travelled => format!("the distance that {driver} has travelled"),
-        Recall::Work => "the work that the muscle has turned over".to_owned(),
+        Recall::Largest => format!("the distance of {driver} from its maximum so far"),
+        Recall::Travelled => format!("the accumulated travel of {driver}"),
+        Recall::Work => "the accumulated work".to_owned(),
     }
 }
 
@@ -89,7 +89,7 @@ fn place(sentence: &Sentence, curve: &EmpiricalCurve) -> String {
         return format!("acts only where {of} is between {} and {}", show(from), show(to));
     }
     if sentence.shape == Curve::Line {
-        return format!("is in proportion to {of}");
+        return format!("is proportional to {of}");
     }
     let (up, down) = curve.force_n.windows(2).fold((0.0, 0.0), |(up, down), pair| {
         let step = pair[1] - pair[0];
@@ -100,7 +100,7 @@ fn place(sentence: &Sentence, curve: &EmpiricalCurve) -> String {
     } else if up < STEADY * down {
         format!("falls with {of}")
     } else {
-        format!("follows {of}, up and down")
+        format!("varies with {of}, rising and falling")
     }
 }
 
@@ -116,18 +116,18 @@ fn acts_within(curve: &EmpiricalCurve) -> Option<(f64, f64)> {
 fn scale(scale: Scale, height_n: f64, typical: f64) -> String {
     let error = if typical > 0.0 { height_n / typical } else { 0.0 };
     match scale {
-        Scale::One => "the same in both directions, and does not grow with pressure".to_owned(),
-        Scale::Pressure => "the same in both directions, in proportion to the pressure".to_owned(),
-        Scale::GasForce => "the same in both directions, in proportion to the force of the gas".to_owned(),
-        Scale::BladderForce => "the same in both directions, in proportion to the force of the bladder".to_owned(),
+        Scale::One => "the same in both directions, independent of pressure".to_owned(),
+        Scale::Pressure => "the same in both directions, proportional to the pressure".to_owned(),
+        Scale::GasForce => "the same in both directions, proportional to the gas force".to_owned(),
+        Scale::BladderForce => "the same in both directions, proportional to the bladder force".to_owned(),
         Scale::Friction => {
-            "of the other sign in the other direction, in proportion to the pressure as friction is".to_owned()
+            "reversing sign with the direction of motion, proportional to the pressure as friction is".to_owned()
         }
-        Scale::Direction => "of the other sign in the other direction, and does not grow with pressure".to_owned(),
-        Scale::Contracting => "only while the muscle contracts, and does not grow with pressure".to_owned(),
-        Scale::Extending => "only while the muscle extends, and does not grow with pressure".to_owned(),
-        Scale::SlopeOverPressure => format!("as if the pressure were another by up to {} kPa", rounded(1e-3 * error)),
-        Scale::SlopeOverLength => format!("as if the length were another by up to {} mm", rounded(1e3 * error)),
+        Scale::Direction => "reversing sign with the direction of motion, independent of pressure".to_owned(),
+        Scale::Contracting => "only while the muscle contracts, independent of pressure".to_owned(),
+        Scale::Extending => "only while the muscle extends, independent of pressure".to_owned(),
+        Scale::SlopeOverPressure => format!("equivalent to a pressure error of up to {} kPa", rounded(1e-3 * error)),
+        Scale::SlopeOverLength => format!("equivalent to a length error of up to {} mm", rounded(1e3 * error)),
     }
 }
 
@@ -156,9 +156,7 @@ fn cause(sentence: &Sentence, is_local: bool) -> Option<&'static str> {
             _,
             Scale::SlopeOverPressure | Scale::GasForce | Scale::Pressure,
         ) => Some("pressure may be lost while the valve holds it"),
-        (Driver::Time, Recall::None, Scale::One) => {
-            Some("something may drift with the time of day or of the recording")
-        }
+        (Driver::Time, Recall::None, Scale::One) => Some("something may drift during each recording"),
         _ => None,
     }
 }
@@ -209,7 +207,7 @@ mod tests {
     #[test]
     fn a_bump_is_said_by_its_place_and_by_what_it_does_not_depend_on() {
         let (sentence, curve) = bump(Scale::One);
-        insta::assert_snapshot!(words(&sentence, &curve), @"a force of up to 7.25 N that acts only where the contraction is between 11 and 13 %, the same in both directions, and does not grow with pressure: something may touch the muscle there");
+        insta::assert_snapshot!(words(&sentence, &curve), @"a force of up to 7.25 N that acts only where the contraction is between 11 and 13 %, the same in both directions, independent of pressure: something may touch the muscle there");
     }
 
     #[test]
@@ -222,7 +220,7 @@ mod tests {
             shape: Curve::Line,
             ..sentence
         };
-        curve.typical_scale = 1e-3;
-        insta::assert_snapshot!(words(&sentence, &curve), @"");
+        (curve.typical_scale, curve.unit) = (1e-3, "Pa".to_owned());
+        insta::assert_snapshot!(words(&sentence, &curve), @"a force of up to 12 N that is proportional to the recent change of the pressure (time constant 0.31 s), equivalent to a pressure error of up to 12 kPa: the pressure in the muscle may follow the gauge late");
     }
 }
