@@ -1,6 +1,7 @@
 //! Diagnose where a force model and bench recordings differ, and which physics was left out.
 
 mod args;
+mod empirical;
 mod explain;
 mod page;
 mod run;

@@ -12,9 +12,11 @@ use pam_report::{
     PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
 };
 
+use crate::empirical;
+
 /// Everything that the report shows.
 pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: Vec<Trace>) -> DiagnosisPage {
-    let with_effects = !artifact.effects.is_empty();
+    let with_effects = !artifact.effects.is_empty() || artifact.empirical.is_some();
     DiagnosisPage {
         title: title(model),
         verdict: match artifact.verdict {
@@ -32,6 +34,7 @@ pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: 
         recordings: traces.into_iter().map(|trace| recording(trace, artifact, with_effects)).collect(),
         regions: significant(&artifact.regions).map(region).collect(),
         effects: artifact.effects.iter().map(effect).collect(),
+        empirical: artifact.empirical.as_ref().map(empirical::page),
         candidates: artifact
             .candidates
             .iter()

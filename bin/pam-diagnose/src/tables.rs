@@ -7,7 +7,7 @@ use pam_diagnosis::words;
 use pam_report::Table;
 use pam_report::number::{engineering, engineering_with_stderr, probability, significant};
 
-use crate::page;
+use crate::{empirical, page};
 
 /// Candidates that are listed.
 const CANDIDATES: usize = 5;
@@ -17,7 +17,14 @@ const REGIONS: usize = 3;
 /// Verdict and everything that it rests on.
 pub(crate) fn all(artifact: &DiagnosisArtifact) -> String {
     let mut text = format!("{}: {}\n", word(artifact.verdict), artifact.statement);
-    let parts = [effects(artifact), Some(fit(artifact)), regions(artifact), candidates(artifact), next(artifact)];
+    let parts = [
+        effects(artifact),
+        empirical::table(artifact),
+        Some(fit(artifact)),
+        regions(artifact),
+        candidates(artifact),
+        next(artifact),
+    ];
     for part in parts.into_iter().flatten() {
         text.push('\n');
         text.push_str(&part);
@@ -77,7 +84,11 @@ fn fit(artifact: &DiagnosisArtifact) -> String {
     let mut table = Table::new(["residual, rms", "as given N", "base N", "with effects N", "noise floor N"]);
     let mut row = |name: &str, given: Option<Residual>, fit: &BeforeAfter| {
         let given = given.map_or("-".to_owned(), |given| significant(given.rmse_n, 3));
-        let after = if artifact.effects.is_empty() { "-".to_owned() } else { significant(fit.rmse_after_n, 3) };
+        let after = if artifact.effects.is_empty() && artifact.empirical.is_none() {
+            "-".to_owned()
+        } else {
+            significant(fit.rmse_after_n, 3)
+        };
         let (before, floor) = (significant(fit.rmse_before_n, 3), significant(fit.noise_floor_n, 3));
         table.row([name.to_owned(), given, before, after, floor]);
     };

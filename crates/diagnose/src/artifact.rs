@@ -152,6 +152,7 @@ impl Diagnosis {
             as_given: Some(self.given.artifact()),
             regions: self.regions.clone(),
             effects: self.effects.clone(),
+            empirical: self.empirical.clone(),
             fit: DiagnosisFit {
                 estimation: pair(&together(&agreement.base_estimation), &together(&agreement.estimation)),
                 holdout: held.map(|(before, after)| pair(&before, &after)),

@@ -2,10 +2,11 @@
 
 use pam_core::artifact::ModelArtifact;
 use pam_core::artifact::diagnosis::{
-    Candidate, Coordinate, DiagnoseConfig, Evidence, Implausible, Isolability, NamedEffect, NextExperiment, Region,
-    Verdict,
+    Candidate, Coordinate, DiagnoseConfig, Empirical, EmpiricalTerm, Evidence, Implausible, Isolability, NamedEffect,
+    NextExperiment, Region, Verdict,
 };
 use pam_core::artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
+use pam_core::effects::sentence::EMPIRICAL;
 use pam_core::effects::{AugmentedModel, Term};
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
@@ -13,6 +14,7 @@ use pam_identification::evaluate::evaluate;
 use pam_identification::prepare::{Prepared, redirect};
 
 use crate::check;
+use crate::discover;
 use crate::error::DiagnoseError;
 use crate::given::Given;
 use crate::isolability::isolability;
@@ -26,7 +28,7 @@ use crate::question::{Answer, Question};
 use crate::regions::{Place, concentrated};
 use crate::search::{Found, Limits, chance};
 use crate::stand_ins;
-use crate::state::Setting;
+use crate::state::{Setting, State};
 use crate::structure::Remainder;
 use crate::track::Track;
 use crate::uncertainty::{Uncertainty, correlated_instants, entries, shape_errors};
@@ -66,6 +68,8 @@ pub struct Diagnosis {
     pub regions: Vec<Region>,
     /// Effects in order of evidence.
     pub effects: Vec<NamedEffect>,
+    /// What models the part that has no name.
+    pub empirical: Option<Empirical>,
     /// Share of the mismatch that is left.
     pub unexplained_share: f64,
     /// Where structure is left.
@@ -182,9 +186,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     }
     let question = Question::new(&estimation, &model, limits);
     let Answer { track, mut found, knocks, mut sizes } = answer;
-    if !holdout.is_empty() && knocks.is_none() {
-        let held = Track::of(&holdout, model.direction, &model.force_model())?;
-        found = veto::confirmed(&question, &track, found, &held);
+    let held = match holdout.is_empty() {
+        true => None,
+        false => Some(Track::of(&holdout, model.direction, &model.force_model())?),
+    };
+    if let Some(held) = held.as_ref().filter(|_| knocks.is_none()) {
+        found = veto::confirmed(&question, &track, found, held);
         sizes = Sizes::of(&found, &question.limits);
     }
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
@@ -201,20 +208,29 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     given.beside_effects(&question, &track, &found);
     let space = &question.space;
     observer(steps - 1, steps);
-    let state = &found.best.state;
-    let undetermined = || DiagnoseError::Undetermined { path: estimation[0].recording.path.clone() };
-    let folds = setting.fold_fits(state).ok_or_else(undetermined)?;
-    let uncertainty = Uncertainty::of(&folds, space);
     let verdict = verdict(&found, &sizes, knocks.is_some());
+    let discovery = discover::discover(&setting, &found, &sizes, verdict, held.as_ref());
+    let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
+    let (state, nuisance) = match &discovery {
+        Some(discovery) => (&discovery.best.state, &discovery.nuisance),
+        None => (&found.best.state, &found.nuisance),
+    };
+    let whole = question.setting(&track, nuisance);
+    let undetermined = || DiagnoseError::Undetermined { path: estimation[0].recording.path.clone() };
+    let folds = whole.fold_fits(state).ok_or_else(undetermined)?;
+    let uncertainty = Uncertainty::of(&folds, space);
 
-    let correlated = correlated_instants(&setting, &setting.residuals_n(state));
-    let (effects, mut entries) = named(&setting, &found, &uncertainty, correlated, knocks.as_ref());
+    let correlated = correlated_instants(&whole, &whole.residuals_n(state));
+    let (effects, mut entries) = named(&whole, &found, state, &uncertainty, correlated, knocks.as_ref());
+    let empirical = discovery.as_ref().map(|discovery| discovery.written(&whole, &found, &folds));
+    entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
     let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
     let mut terms = state.terms();
-    if let Some(map) = found.nuisance.map_term(&state.fit.nuisances, &track, &found.coordinates) {
+    if let Some(map) = nuisance.map_term(&state.fit.nuisances, &track, &found.coordinates) {
         entries.push(map_entry(&map));
         terms.push(map);
     }
+    terms.extend(discovery.iter().flat_map(discover::Discovery::terms));
     if let Some(knocks) = &knocks {
         terms.push(knocks.term());
         regions.insert(if effects[0].id == knocks::ID { 0 } else { regions.len() }, knocks.region(sizes.mismatch_n));
@@ -241,10 +257,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     }
     let diagnosis = Diagnosis {
         verdict,
-        statement: words::statement(verdict, &effects, &sizes, &regions, &unexplained),
+        statement: words::statement(verdict, &effects, &sizes, &regions, &unexplained)
+            + &empirical.as_ref().map_or(String::new(), discover::statement),
         given,
         regions,
         effects,
+        empirical,
         unexplained_share: sizes.share_left(),
         unexplained,
         implausible,
@@ -275,7 +293,13 @@ fn map_entry(map: &Term) -> EffectEntry {
             let status = ParameterStatus::Fitted;
             ParameterEntry { name: name.to_owned(), value, unit: unit.to_owned(), stderr: None, status }
         });
-    EffectEntry { id: MAP_ID.to_owned(), parameters: parameters.collect() }
+    EffectEntry { id: MAP_ID.to_owned(), sentence: None, parameters: parameters.collect() }
+}
+
+/// A term without a name as a model artifact has it.
+fn term_entry(term: &EmpiricalTerm) -> EffectEntry {
+    let (id, sentence) = (EMPIRICAL.to_owned(), Some(term.sentence.clone()));
+    EffectEntry { id, sentence, parameters: term.parameters.clone() }
 }
 
 /// The mass behind `knocks`.
@@ -306,7 +330,7 @@ fn better_base(
     Ok(if rmse_n(&identified)? <= rmse_n(refitted)? { identified } else { refitted.clone() })
 }
 
-fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
+pub(crate) fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
     let improved = without.log_ratios(with).filter(|&ratio| ratio > 0.0).count();
     Evidence {
         log_ratio: without.log_ratio(with),
@@ -319,15 +343,15 @@ fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
 }
 
 /// The effects that were taken and the mass behind `knocks`, in order of evidence, and in that in which a model has them;
-/// `correlated` instants of the residual stand for one.
+/// `correlated` instants of the residual stand for one; `state` is what was found, with terms without a name beside it.
 fn named(
     setting: &Setting<'_>,
     found: &Found,
+    state: &State,
     uncertainty: &Uncertainty,
     correlated: f64,
     knocks: Option<&Knocks>,
 ) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
-    let state = &found.best.state;
     let mut named = Vec::new();
     let mut first = 0;
     for (index, guess) in state.guesses.iter().enumerate() {
@@ -355,7 +379,11 @@ fn named(
         });
     }
     named.extend(knocks.map(knocking));
-    let entry = |named: &NamedEffect| EffectEntry { id: named.id.clone(), parameters: named.parameters.clone() };
+    let entry = |named: &NamedEffect| EffectEntry {
+        id: named.id.clone(),
+        sentence: None,
+        parameters: named.parameters.clone(),
+    };
     let list = named.iter().map(entry).collect();
     named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
     (named, list)
@@ -434,7 +462,7 @@ fn telling(places: Vec<Place>, known: &[Coordinate]) -> Vec<Region> {
 }
 
 /// Coordinates over which the residual of a state is structured, the most telling first.
-fn structured(setting: &Setting<'_>, state: &crate::state::State, found: &Found, paths: &[String]) -> Vec<Place> {
+fn structured(setting: &Setting<'_>, state: &State, found: &Found, paths: &[String]) -> Vec<Place> {
     let remainder = Remainder::of(setting, state);
     let Some(nothing) = remainder.structure(&[]) else { return Vec::new() };
     let mut places: Vec<(f64, Place)> = Vec::new();

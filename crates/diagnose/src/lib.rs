@@ -9,6 +9,7 @@ pub mod base;
 mod check;
 pub mod coordinates;
 pub mod diagnose;
+mod discover;
 pub mod error;
 pub mod explain;
 mod forms;

@@ -6,6 +6,7 @@
 //! | tare           | one constant per recording                                                           |
 //! | reversal       | friction within a tenth of a millimetre after each reversal: no strand turns over at once, and no length sensor tells when |
 //! | beginning      | what a named effect with a lasting memory keeps of what went before every recording |
+//! | term           | values of the curve of a term without a name                                         |
 //! | form of effect | changes of the shape of an effect that was named, and of its size over pressure and contraction |
 //!
 //! Every column has a root mean square of one newton over the instants that count (that of a tare where it is
@@ -39,6 +40,8 @@ pub enum Group {
     Form,
     /// What a named effect remembers of what went before a recording.
     Beginning,
+    /// The curve of a term without a name.
+    Term,
 }
 
 /// Columns of nuisances over the instants of a track.
@@ -193,6 +196,43 @@ impl Nuisance {
         let even = plane(FREE_EVEN, &|_| 1.0);
         let odd = plane(FREE_ODD, &|at| track.instants[at].moment.direction);
         self.with(Group::EvenMap, even, &track.counted, LOOSE).with(Group::OddMap, odd, &track.counted, LOOSE)
+    }
+
+    /// With `columns` of the curve of a term without a name.
+    #[must_use]
+    pub(crate) fn with_term(&self, columns: Vec<Vec<f64>>, counted: &[bool]) -> Self {
+        self.with(Group::Term, columns, counted, LOOSE)
+    }
+
+    /// `coefficients` of some columns in the units that these had before they were given a size of one newton.
+    pub(crate) fn in_their_units(&self, coefficients: &[f64], columns: Range<usize>) -> Vec<f64> {
+        columns.map(|column| coefficients[column] * self.scales[column]).collect()
+    }
+
+    /// The same without its static map.
+    #[must_use]
+    pub(crate) fn without_map(&self) -> Self {
+        let keeps = |group: &Group| !matches!(group, Group::EvenMap | Group::OddMap);
+        let kept: Vec<(Group, Range<usize>)> = self.groups.iter().filter(|(group, _)| keeps(group)).cloned().collect();
+        let columns: Vec<usize> = kept.iter().flat_map(|(_, columns)| columns.clone()).collect();
+        let of = |values: &[f64]| columns.iter().map(|&column| values[column]).collect();
+        let mut first = 0;
+        let renumbered = kept.into_iter().map(|(group, columns)| {
+            let range = first..first + columns.len();
+            first = range.end;
+            (group, range)
+        });
+        Self {
+            n: columns.len(),
+            rows: self
+                .rows
+                .chunks_exact(self.n.max(1))
+                .flat_map(|row| columns.iter().map(|&column| row[column]))
+                .collect(),
+            precision: of(&self.precision),
+            scales: of(&self.scales),
+            groups: renumbered.collect(),
+        }
     }
 
     /// The same with a static map that is drawn to zero `factor` times as strongly.

@@ -255,7 +255,7 @@ const STRENGTHS: [f64; 5] = [1.0, 10.0, 100.0, 1000.0, 1e7];
 
 /// `map` with the prior under which it foretells held-out blocks best, beside `best`: what a few recordings say of a static
 /// force somewhere is no license to bend it elsewhere. With what it leaves, as a mean square.
-fn fitting(plain: &Setting<'_>, best: &Judged, map: &Nuisance) -> Option<(f64, Nuisance)> {
+pub(crate) fn fitting(plain: &Setting<'_>, best: &Judged, map: &Nuisance) -> Option<(f64, Nuisance)> {
     let judge = |factor: f64| {
         let tightened = map.tightened(factor);
         Some((again(&plain.beside(&tightened), best)?.held_out.mean_square(), tightened))
@@ -447,7 +447,7 @@ pub(crate) fn judged(setting: &Setting<'_>, state: State) -> Option<Judged> {
 }
 
 /// The hypothesis of `best` fitted anew in another setting.
-fn again(setting: &Setting<'_>, best: &Judged) -> Option<Judged> {
+pub(crate) fn again(setting: &Setting<'_>, best: &Judged) -> Option<Judged> {
     judged(setting, setting.fit_near(best.state.guesses.clone(), &best.state)?)
 }
 

@@ -204,10 +204,10 @@ struct Products {
 #[derive(Debug)]
 pub struct Remainder {
     /// Orthonormal directions that the parameters can move the model in, and the residual: `n_directions + 1` per row.
-    rows: Vec<f64>,
-    n_directions: usize,
+    pub(crate) rows: Vec<f64>,
+    pub(crate) n_directions: usize,
     /// Ridge of each direction.
-    ridges: Vec<f64>,
+    pub(crate) ridges: Vec<f64>,
     blocks: Vec<Range<usize>>,
     fold_of_block: Vec<usize>,
     counts: Vec<f64>,

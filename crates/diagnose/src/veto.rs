@@ -147,7 +147,7 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
 }
 
 /// Force that `model` predicts at every instant of `track`, in N.
-fn force_n(track: &Track, model: &AugmentedModel) -> Vec<f64> {
+pub(crate) fn force_n(track: &Track, model: &AugmentedModel) -> Vec<f64> {
     let delays_s = model.delays_s();
     let mut forces_n = Vec::with_capacity(track.n());
     for range in &track.recordings {

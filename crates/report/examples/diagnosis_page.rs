@@ -235,6 +235,7 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
         recordings,
         regions: Vec::new(),
         effects: Vec::new(),
+        empirical: None,
         candidates: Vec::new(),
         unknown: PageUnknown::default(),
         next_experiment: None,

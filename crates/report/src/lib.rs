@@ -24,9 +24,9 @@ mod table;
 
 pub use confusion_figure::{ConfusionFigure, confusion_figure};
 pub use diagnosis_page::{
-    DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEvidence,
-    PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording,
-    PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict, diagnosis_page,
+    DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEmpirical,
+    PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter,
+    PageRecording, PageRegion, PageShift, PageSymbol, PageTerm, PageUnknown, PageVerdict, diagnosis_page,
 };
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;

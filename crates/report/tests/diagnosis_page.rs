@@ -103,6 +103,7 @@ fn full() -> DiagnosisPage {
             look_alikes: vec![PageAlternative { id: text(), name: text(), because: text(), test: text() }],
             separating_test: text(),
         }],
+        empirical: None,
         candidates: vec![PageCandidate { id: text(), name: text(), evidence, explains: 0.4, outcome: text() }],
         unknown: PageUnknown {
             unexplained_share: 0.1,
@@ -147,6 +148,7 @@ fn bare(verdict: PageVerdict, recordings: Vec<PageRecording>) -> DiagnosisPage {
         recordings,
         regions: Vec::new(),
         effects: Vec::new(),
+        empirical: None,
         candidates: Vec::new(),
         unknown: PageUnknown::default(),
         next_experiment: None,

@@ -17,6 +17,7 @@ pub mod calibrate;
 pub mod case;
 pub mod confusion;
 pub mod criteria;
+pub mod discovered;
 pub mod draw;
 pub mod folder;
 pub mod heldout;

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::discovered::Discovered;
+
 /// What the truth says of a case.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Concealed {
@@ -36,6 +38,10 @@ pub struct Answer {
     pub base_n: f64,
     /// Of the augmented model.
     pub augmented_n: f64,
+    /// What was discovered without a name.
+    pub discovered: Option<Discovered>,
+    /// Error left of held-out samples whose direction is settled, as the diagnosis has it.
+    pub settled_left: Option<f64>,
 }
 
 /// A case, scored strictly.

@@ -5,6 +5,9 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use super::empirical::{
+    Empirical, EmpiricalCurve, EmpiricalGain, EmpiricalTerm, NearestEffect, Stability, StabilityRival,
+};
 use super::model::ParameterEntry;
 use super::{ArtifactError, Input, Tool};
 
@@ -40,6 +43,9 @@ pub struct DiagnosisArtifact {
     pub effects: Vec<NamedEffect>,
     /// Residuals before and after.
     pub fit: DiagnosisFit,
+    /// What models the part that has no name; none where nothing does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub empirical: Option<Empirical>,
     /// Share of the excess over the noise floor (mean squares) that the effects leave unexplained, in [0, 1].
     pub unexplained_share: f64,
     /// Where structure is left that no effect explains; empty where none is.

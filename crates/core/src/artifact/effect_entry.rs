@@ -4,27 +4,44 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::model::ParameterEntry;
-use crate::effects::{self, CATALOGUE, Term};
+use crate::effects::sentence::{EMPIRICAL, own};
+use crate::effects::{self, CATALOGUE, Effect, Sentence, Term};
 use crate::spelling::number;
 
 /// An effect beyond eq. 11.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EffectEntry {
-    /// Catalogue id.
+    /// Catalogue id, or `empirical` for a term that has no name.
     pub id: String,
+    /// What an empirical term is, but for its amplitudes; none for an effect of the catalogue.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sentence: Option<Sentence>,
     /// Its shape and its amplitudes, in SI, under the names and in the units of the catalogue.
     pub parameters: Vec<ParameterEntry>,
 }
 
 impl EffectEntry {
-    /// The effect with its values, every parameter once and within the range of the catalogue.
-    pub(super) fn term(&self) -> Result<Term, String> {
-        let Some(effect) = effects::effect(&self.id) else {
+    /// The effect without its values.
+    fn effect(&self) -> Result<&'static dyn Effect, String> {
+        match &self.sentence {
+            Some(sentence) if self.id == EMPIRICAL => {
+                return own(sentence).map_err(|reason| format!("the sentence of effect {EMPIRICAL}: {reason}"));
+            }
+            Some(_) => return Err(format!("effect {} has a sentence, which belongs to {EMPIRICAL} alone", self.id)),
+            None if self.id == EMPIRICAL => return Err(format!("effect {EMPIRICAL} lacks its sentence")),
+            None => {}
+        }
+        effects::effect(&self.id).ok_or_else(|| {
             let mut known: Vec<&str> = CATALOGUE.iter().map(|effect| effect.page().id).collect();
             known.sort_by_key(|id| strsim::osa_distance(&self.id, id));
-            return Err(format!("effect \"{}\" is unknown; the nearest are {}", self.id, known[..3].join(", ")));
-        };
+            format!("effect \"{}\" is unknown; the nearest are {}", self.id, known[..3].join(", "))
+        })
+    }
+
+    /// The effect with its values, every parameter once and within the range of the catalogue.
+    pub(super) fn term(&self) -> Result<Term, String> {
+        let effect = self.effect()?;
         let shapes = effect.shape().iter().map(|shape| (shape.name, shape.unit, shape.range));
         let amplitudes = effect.amplitudes().iter().map(|amplitude| (amplitude.name, amplitude.unit, amplitude.range));
         let expected: Vec<_> = shapes.chain(amplitudes).collect();

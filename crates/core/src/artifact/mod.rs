@@ -5,6 +5,7 @@
 
 pub mod diagnosis;
 mod effect_entry;
+mod empirical;
 pub mod inverse;
 pub mod model;
 

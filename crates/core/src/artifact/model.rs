@@ -404,9 +404,9 @@ impl ModelArtifact {
         }
         for (index, entry) in self.effects.iter().enumerate() {
             let term = entry.term()?;
-            // Events may come again; what belongs to muscle or bench is there or not.
+            // Events may come again, and so may terms without a name; what belongs to muscle or bench is there or not.
             let again = self.effects[..index].iter().any(|other| other.id == entry.id);
-            if again && term.effect.kind() != Kind::Event {
+            if again && term.effect.kind() != Kind::Event && entry.sentence.is_none() {
                 return Err(format!("effect {} stands there twice", entry.id));
             }
         }
@@ -454,7 +454,7 @@ mod tests {
     }
 
     fn effect(id: &str, parameters: Vec<ParameterEntry>) -> EffectEntry {
-        EffectEntry { id: id.to_owned(), parameters }
+        EffectEntry { id: id.to_owned(), sentence: None, parameters }
     }
 
     fn artifact(effects: Vec<EffectEntry>) -> ModelArtifact {

@@ -17,6 +17,7 @@ pub mod augmented;
 mod catalogue;
 pub mod moment;
 pub mod page;
+pub mod sentence;
 pub mod slip;
 
 mod prony;
@@ -50,6 +51,7 @@ pub use catalogue::{CATALOGUE, NAMELESS, effect};
 pub use inertia::Mount;
 pub use moment::{Base, Moment};
 pub use page::{Page, Symbol};
+pub use sentence::Sentence;
 
 use crate::motion::Instant;
 use crate::muscle::Muscle;
@@ -201,6 +203,11 @@ pub trait Effect: Sync {
     /// Whether its pull needs the slopes of [`Base`], which cost four more evaluations of eq. 11.
     fn uses_slopes(&self) -> bool {
         false
+    }
+
+    /// The sentence that it is, where it is no effect of the catalogue but one that was written in the grammar.
+    fn sentence(&self) -> Option<&Sentence> {
+        None
     }
 
     /// By how much the channels of pressure and length are late behind the force, in s; [`Role::Shift`].

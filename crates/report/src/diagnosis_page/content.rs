@@ -1,6 +1,6 @@
 //! What the page says, section by section.
 
-use super::{PageCoordinate, PageRecording};
+use super::{PageCoordinate, PageEmpirical, PageRecording};
 
 /// Everything that the page shows. Texts are plain: whatever they contain is shown as written.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +25,8 @@ pub struct DiagnosisPage {
     pub regions: Vec<PageRegion>,
     /// Effects that were left out, in order of evidence.
     pub effects: Vec<PageEffect>,
+    /// What models the part without a name.
+    pub empirical: Option<PageEmpirical>,
     /// Everything that was weighed.
     pub candidates: Vec<PageCandidate>,
     /// What is still unknown.

@@ -6,6 +6,7 @@
 //! | mismatch           | whether there is one, and how the model as given compares with its refit         |
 //! | where              | regions; residual against each coordinate, over pressure and contraction, time   |
 //! | what               | effects with equation, parameters, evidence, rivals; everything that was weighed |
+//! |                    | what models the part without a name: equation, curve with its band, rivals       |
 //! | what it buys       | held-out recordings before and after; a loop before and after                    |
 //! | what is unknown    | what is left, and where; what cannot be decided; implausible parameters          |
 //! | what to record     | the recording that would tell more                                               |
@@ -16,6 +17,7 @@
 
 mod content;
 mod coordinate;
+mod empirical;
 mod ending;
 mod fit_bars;
 mod given;
@@ -38,6 +40,7 @@ pub use content::{
     PageUnknown, PageVerdict,
 };
 pub use coordinate::PageCoordinate;
+pub use empirical::{PageEmpirical, PageTerm};
 pub use recording::PageRecording;
 
 use crate::FigureError;
@@ -56,7 +59,7 @@ pub fn diagnosis_page(page: &DiagnosisPage) -> Result<String, FigureError> {
     let sections = [
         ("mismatch", "Is there a mismatch?", mismatch(page)?),
         ("where", "Where do model and recordings differ?", place::place(page, &recordings)?),
-        ("what", "What was left out?", named::named(page)),
+        ("what", "What was left out?", named::named(page) + &empirical::empirical(page.empirical.as_ref())?),
         ("gain", "What does it buy?", ending::gain(page, &recordings)?),
         ("unknown", "What is still unknown?", ending::unknown(page)),
         ("next", "What to record next", ending::next(page.next_experiment.as_ref())),

@@ -8,6 +8,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::{Parser, ValueEnum};
+use pam_proof::discovered::{Discovered, Discoveries};
 use pam_proof::worlds_score::{Answer, Concealed, Score, Summary, error_left, score, summarize};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -260,8 +261,32 @@ fn answer(args: &Args, case: &str) -> Result<Answer> {
         named: named.map(|effect| (text_of(&effect["id"]), strings(&effect["alternatives"]))).collect(),
         regions: regions.filter_map(region).collect(),
         base_n,
+        discovered: Discovered::of(&diagnosis),
+        settled_left: settled_left(&diagnosis),
         augmented_n: if path("augmented.json").exists() { rms("augmented.json")? } else { base_n },
     })
+}
+
+/// What a diagnosis leaves of held-out samples whose direction is settled, as a share of what the base does.
+fn settled_left(diagnosis: &Value) -> Option<f64> {
+    let holdout = &diagnosis["fit"]["holdout"];
+    Some(holdout["rmse_after_n"].as_f64()? / holdout["rmse_before_n"].as_f64()?)
+}
+
+fn discoveries(scores: &[Score], out: &mut impl Write) -> Result<Discoveries> {
+    let found = Discoveries::of(scores);
+    writeln!(out, "nothing: nothing discovered            {}", found.nothing_where_nothing)?;
+    writeln!(out, "nameless: discovered                   {}", found.discovered)?;
+    writeln!(out, "  of these with its driver             {}", found.driver)?;
+    writeln!(out, "  of these with its memory             {}", found.memory)?;
+    writeln!(out, "nameless: error not above the base's   {}", found.no_harm)?;
+    if let Some((median, most)) = found.error_left {
+        writeln!(out, "nameless: error left, median / 90 %    {median:.3} / {most:.3}")?;
+    }
+    if let Some((median, most)) = found.settled_left {
+        writeln!(out, "  where the direction is settled       {median:.3} / {most:.3}")?;
+    }
+    Ok(found)
 }
 
 fn table(out: &mut impl Write, title: &str, groups: &BTreeMap<String, Summary>) -> Result<()> {
@@ -298,6 +323,7 @@ fn report(scores: &[Score], out: &mut impl Write) -> Result<Value> {
     if let Some((median, most)) = sum.error_left {
         writeln!(out, "held-out error left, median / 90 %     {median:.3} / {most:.3}")?;
     }
+    let found = discoveries(scores, out)?;
     let mut by_world: BTreeMap<String, BTreeMap<String, Vec<&Score>>> = BTreeMap::new();
     let mut by_effect: BTreeMap<String, Vec<&Score>> = BTreeMap::new();
     for score in scores {
@@ -343,7 +369,7 @@ fn report(scores: &[Score], out: &mut impl Write) -> Result<Value> {
             score.answer.base_n,
         )?;
     }
-    Ok(json!({ "overall": sum, "by_world": worlds, "by_effect": effects, "cases": scores }))
+    Ok(json!({ "overall": sum, "discoveries": found, "by_world": worlds, "by_effect": effects, "cases": scores }))
 }
 
 fn main() -> Result<()> {

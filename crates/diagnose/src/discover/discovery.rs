@@ -1,0 +1,242 @@
+//! The search for terms: one after the other, as long as each gains where it was not fitted.
+
+use pam_core::artifact::diagnosis::Verdict;
+use pam_core::effects::{AugmentedModel, Sentence, Term};
+
+use super::confirm::Left;
+use super::field::Field;
+use super::screen::{self, Said};
+use super::{joined, stability};
+use crate::joint::HeldOut;
+use crate::nuisance::Nuisance;
+use crate::search::{Found, Judged, again, chance, fitting};
+use crate::state::Setting;
+use crate::track::Track;
+use crate::verdict::Sizes;
+
+/// Terms that may be written.
+const MOST_TERMS: usize = 2;
+/// Sentences that are fitted jointly before the best of them is taken.
+const FITTED: usize = 3;
+/// Evidence over held-out blocks that a term needs.
+const LEAST_LOG_RATIO: f64 = 3.0;
+/// Share of the mean square over held-out blocks that it must take away.
+const LEAST_SHARE: f64 = 0.05;
+/// Sentences that are looked at, about, where chance is asked for.
+pub(super) const LOOKS: f64 = 500.0;
+/// Chance that is no longer believed in, where no recording was held out to ask.
+const CHANCE: f64 = 0.05;
+/// Share of the mean square over held-out blocks that a static map must take up beside terms to be kept.
+const WORTH_A_MAP: f64 = 0.02;
+/// Times the sensors' noise that an explained mismatch may leave, root mean square, before more is looked for.
+const LEAVES_ENOUGH: f64 = 1.5;
+
+/// Terms without a name, fitted jointly with everything else.
+#[derive(Debug)]
+pub(crate) struct Discovery {
+    /// Base and effects beside [`nuisance`](Self::nuisance).
+    pub(crate) best: Judged,
+    /// What is in beside them, the curves of the terms included.
+    pub(crate) nuisance: Nuisance,
+    pub(super) terms: Vec<Written>,
+    pub(super) held_out: Option<[Left; 2]>,
+    pub(super) before: HeldOut,
+}
+
+/// A term that is written.
+#[derive(Debug, Clone)]
+pub(super) struct Written {
+    pub(super) sentence: Sentence,
+    pub(super) without: HeldOut,
+    pub(super) with: HeldOut,
+    /// What else was in question, with how often draws of blocks choose it, this one first.
+    pub(super) chosen: Vec<(Said, f64)>,
+}
+
+/// Base and effects with terms, and what is in beside them.
+#[derive(Clone)]
+struct Step {
+    best: Judged,
+    nuisance: Nuisance,
+    terms: Vec<Written>,
+}
+
+impl Step {
+    fn sentences(&self) -> Vec<Sentence> {
+        self.terms.iter().map(|written| written.sentence.clone()).collect()
+    }
+
+    /// As a model carries it.
+    fn model(&self, found: &Found, track: &Track) -> AugmentedModel {
+        let state = &self.best.state;
+        let mut terms = state.terms();
+        terms.extend(self.nuisance.map_term(&state.fit.nuisances, track, &found.coordinates));
+        terms.extend(joined::terms(&self.sentences(), &self.nuisance, state));
+        AugmentedModel::new(state.model.clone(), terms)
+    }
+}
+
+/// Looks for terms on what `found` leaves of `setting`, if `verdict` says that something is left; none where nothing gains on
+/// `held`, or where there is nothing held out on the blocks.
+pub(crate) fn discover(
+    setting: &Setting<'_>,
+    found: &Found,
+    sizes: &Sizes,
+    verdict: Verdict,
+    held: Option<&Track>,
+) -> Option<Discovery> {
+    let left_over = match verdict {
+        Verdict::Unexplained => true,
+        Verdict::Explained => sizes.best_n > LEAVES_ENOUGH * sizes.sensors_n,
+        Verdict::Consistent | Verdict::ExplainedInPart | Verdict::Ambiguous => false,
+    };
+    if !left_over {
+        return None;
+    }
+    let left = |step: &Step| held.map(|held| Left::of(&step.model(found, setting.track), held));
+    let start = Step { best: found.best.clone(), nuisance: found.nuisance.clone(), terms: Vec::new() };
+    let before = left(&start);
+    let (plain, mapped) = nuisances(setting, found)?;
+    let mut smooth = Step { best: again(&setting.beside(&mapped), &found.best)?, nuisance: mapped.clone(), ..start };
+    let mut kept: Option<Step> = None;
+    let mut last = before.clone();
+    while smooth.terms.len() < MOST_TERMS {
+        let Some(next) = next_term(setting, &mapped, &smooth) else { break };
+        let now_kept = without_map(setting, &plain, &next)?;
+        let now = left(&now_kept);
+        let written = &next.terms[next.terms.len() - 1];
+        let is_confirmed = match (&last, &now) {
+            (Some(last), Some(now)) => last.is_bettered_by(now),
+            _ => chance(&written.without, &written.with) * LOOKS < CHANCE,
+        };
+        if !is_confirmed {
+            break;
+        }
+        (smooth, last, kept) = (next, now, Some(now_kept));
+    }
+    let Step { best, nuisance, terms } = kept?;
+    Some(Discovery {
+        best,
+        nuisance,
+        terms,
+        held_out: before.zip(last).map(<[Left; 2]>::from),
+        before: found.best.held_out.clone(),
+    })
+}
+
+/// What is in beside sentences: nuisances without a static map, and with one that is as smooth as foretells held-out blocks best,
+/// so that nothing smooth and static is taken for a term.
+fn nuisances(setting: &Setting<'_>, found: &Found) -> Option<(Nuisance, Nuisance)> {
+    let plain = found.nuisance.without_map();
+    let mapped = plain.with_map(setting.track, &found.coordinates);
+    let (_, mapped) = fitting(&setting.beside(&plain), &found.best, &mapped)?;
+    Some((plain, mapped))
+}
+
+/// `step` without the static map where that gains nothing on held-out blocks.
+fn without_map(setting: &Setting<'_>, plain: &Nuisance, step: &Step) -> Option<Step> {
+    let (bare, nuisance) = joined::joined(setting, plain, &step.best, &step.sentences())?;
+    let keeps = step.best.held_out.mean_square() < (1.0 - WORTH_A_MAP) * bare.held_out.mean_square();
+    Some(if keeps { step.clone() } else { Step { best: bare, nuisance, terms: step.terms.clone() } })
+}
+
+/// `step` with one more term that gains on held-out blocks; `mapped` is what is in beside terms.
+fn next_term(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Option<Step> {
+    let best = &step.best;
+    let beside = setting.beside(&step.nuisance);
+    let field = Field::of(&beside, &best.state)?;
+    let said = screen::screen(&field, &beside, &best.state);
+    let fitted = said.iter().take(FITTED).enumerate().filter_map(|(index, said)| {
+        let sentences = [step.sentences(), vec![said.sentence.clone()]].concat();
+        let (next, nuisance) = joined::joined(setting, mapped, best, &sentences)?;
+        Some((best.held_out.log_ratio(&next.held_out) - said.charge(), index, next, nuisance))
+    });
+    let fitted: Vec<(f64, usize, Judged, Nuisance)> = fitted.collect();
+    let (log_ratio, index, next, nuisance) = fitted.into_iter().max_by(|left, right| left.0.total_cmp(&right.0))?;
+    let gained = best.held_out.mean_square() - next.held_out.mean_square();
+    if log_ratio < LEAST_LOG_RATIO || gained < LEAST_SHARE * best.held_out.mean_square() {
+        return None;
+    }
+    let shares = stability::chosen(&field, &said);
+    let mut chosen: Vec<(Said, f64)> = said.into_iter().zip(shares).collect();
+    let own = chosen.remove(index);
+    chosen.sort_by(|left, right| right.1.total_cmp(&left.1));
+    let sentence = own.0.sentence.clone();
+    chosen.insert(0, own);
+    let (without, with) = (best.held_out.clone(), next.held_out.clone());
+    let mut terms = step.terms.clone();
+    terms.push(Written { sentence, without, with, chosen });
+    Some(Step { best: next, nuisance, terms })
+}
+
+impl Discovery {
+    /// Verdict of a diagnosis that holds terms without a name: nothing is explained by them.
+    pub(crate) fn verdict(&self, verdict: Verdict) -> Verdict {
+        if verdict == Verdict::Explained { Verdict::ExplainedInPart } else { verdict }
+    }
+
+    /// The terms as a model carries them.
+    pub(crate) fn terms(&self) -> Vec<Term> {
+        let sentences: Vec<Sentence> = self.terms.iter().map(|written| written.sentence.clone()).collect();
+        joined::terms(&sentences, &self.nuisance, &self.best.state)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pam_core::effects::sentence::{Driver, Recall, Scale};
+
+    use super::*;
+    use crate::rehearsal::tests::Given;
+    use crate::search::{Limits, search};
+    use crate::verdict::verdict;
+
+    const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
+
+    /// What is discovered in `given`, whose sensors leave 0.3 N, beside what is named.
+    fn discovered(given: &Given, held: Option<&Given>) -> Vec<Sentence> {
+        let limits = Limits {
+            max_effects: 2,
+            excluded: vec!["braid-lockup".to_owned(), "end-taper".to_owned()],
+            matters_above_n: None,
+            sensor_floor_n: 0.3,
+            confirmed: false,
+        };
+        let setting = Setting { floor_square: 0.09, ..given.setting() };
+        let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
+        let sizes = Sizes::of(&found, &limits);
+        let said = verdict(&found, &sizes, false);
+        let beside = setting.beside(&found.nuisance);
+        let discovery = discover(&beside, &found, &sizes, said, held.map(|held| &held.track));
+        discovery.map_or_else(Vec::new, |discovery| discovery.terms.into_iter().map(|term| term.sentence).collect())
+    }
+
+    /// Noise that neighbors share, of about 0.2 N, and a bump of `height_n` at a contraction of 12 %.
+    fn bumped(height_n: f64) -> Given {
+        let mut given = Given::of(&PROTOCOLS, &[]);
+        for (at, instant) in given.track.instants.iter_mut().enumerate() {
+            let off = (instant.moment.contraction_ratio - 0.12) / 0.008;
+            let at = at as f64;
+            instant.force_n += 0.2 * ((0.37 * at).sin() + (0.011 * at).sin()) - height_n * (-off * off).exp();
+        }
+        given
+    }
+
+    #[test]
+    fn what_touches_the_muscle_at_one_length_is_a_sentence_of_the_contraction() {
+        let found = discovered(&bumped(8.0), None);
+        let first = found.first().expect("a sentence");
+        assert_eq!((first.driver, first.memory, first.scale), (Driver::Contraction, Recall::None, Scale::One));
+    }
+
+    #[test]
+    fn where_nothing_is_missing_nothing_is_discovered() {
+        assert_eq!(discovered(&bumped(0.0), None), []);
+    }
+
+    #[test]
+    fn what_held_out_recordings_do_not_show_is_not_written() {
+        assert_eq!(discovered(&bumped(8.0), Some(&bumped(0.0))), []);
+        assert!(!discovered(&bumped(8.0), Some(&bumped(8.0))).is_empty());
+    }
+}

@@ -1,0 +1,24 @@
+//! A mismatch without a name gets an equation.
+//!
+//! Where something is left that no effect of the catalogue explains, the [sentence](pam_core::effects::sentence) of the grammar
+//! that foretells held-out blocks best, for its degrees of freedom, is fitted jointly with the base and what was named. It is
+//! written only where held-out recordings, or where there are none the blocks, are foretold better with it.
+//!
+//! In reading order: [`discovery`] goes on as long as something gains; [`lexicon`] is what sentences are made of, [`field`] judges one, [`screen`] finds the best, [`joined`] fits
+//! it with everything else, [`confirm`] asks what was held out, [`stability`] whether other draws of blocks would choose it,
+//! [`written`], [`curve`], [`nearest`] and [`said`] are what a person reads of it.
+
+mod confirm;
+mod curve;
+mod discovery;
+mod field;
+mod joined;
+mod lexicon;
+mod nearest;
+mod said;
+mod screen;
+mod stability;
+mod written;
+
+pub(crate) use discovery::{Discovery, discover};
+pub(crate) use written::statement;

@@ -1,0 +1,92 @@
+//! What a diagnosis writes of the terms that were discovered.
+
+use pam_core::artifact::diagnosis::{Empirical, EmpiricalGain, EmpiricalTerm, Stability, StabilityRival};
+use pam_core::artifact::model::ParameterEntry;
+use pam_core::effects::Term;
+
+use super::discovery::{Discovery, LOOKS};
+use super::screen::Said;
+use super::{curve, joined, nearest, said};
+use crate::diagnose::evidence;
+use crate::joint::JointFit;
+use crate::search::Found;
+use crate::state::Setting;
+use crate::uncertainty::entry;
+
+impl Discovery {
+    /// What a diagnosis writes of the terms; `folds` each leave one fold out.
+    pub(crate) fn written(&self, setting: &Setting<'_>, found: &Found, folds: &[JointFit]) -> Empirical {
+        let state = &self.best.state;
+        let by_fold: Vec<Vec<Vec<f64>>> = folds.iter().map(|fit| joined::amplitudes(&self.nuisance, fit)).collect();
+        let terms = self.terms.iter().zip(self.terms()).enumerate().map(|(index, (written, term))| {
+            let of_folds: Vec<Vec<f64>> = by_fold.iter().map(|fold| fold[index].clone()).collect();
+            let curve = curve::curve(setting, state, &written.sentence, &term.amplitudes, &of_folds);
+            EmpiricalTerm {
+                equation: written.sentence.equation(),
+                words: said::words(&written.sentence, &curve),
+                sentence: written.sentence.clone(),
+                parameters: parameters(&term, &of_folds),
+                evidence: evidence(&written.without, &written.with, LOOKS as usize),
+                stability: stability_of(&written.chosen),
+                nearest: nearest::nearest(found, &self.best.held_out),
+                curve,
+            }
+        });
+        let gain = |rmse_without_n, rmse_with_n| EmpiricalGain { rmse_without_n, rmse_with_n };
+        Empirical {
+            terms: terms.collect(),
+            blocks: gain(self.before.mean_square().sqrt(), self.best.held_out.mean_square().sqrt()),
+            holdout: self.held_out.as_ref().map(|[before, after]| gain(before.together_n(), after.together_n())),
+        }
+    }
+}
+
+/// Amplitudes of a term, with standard errors by the jackknife over folds.
+fn parameters(term: &Term, folds: &[Vec<f64>]) -> Vec<ParameterEntry> {
+    let n = folds.len() as f64;
+    let stderr = |index: usize| {
+        let mean = folds.iter().map(|fold| fold[index]).sum::<f64>() / n;
+        let squares: f64 = folds.iter().map(|fold| (fold[index] - mean).powi(2)).sum();
+        ((n - 1.0) / n * squares).sqrt()
+    };
+    let values = term.effect.amplitudes().iter().zip(&term.amplitudes).enumerate();
+    values
+        .map(|(index, (amplitude, &value))| {
+            let stderr = Some(stderr(index)).filter(|stderr| stderr.is_finite());
+            entry(amplitude.name, amplitude.unit, value, amplitude.range, stderr)
+        })
+        .collect()
+}
+
+/// What the terms do and gain, to be said after the verdict.
+pub(crate) fn statement(empirical: &Empirical) -> String {
+    let words: Vec<&str> = empirical.terms.iter().map(|term| term.words.as_str()).collect();
+    let (gain, on) = match empirical.holdout {
+        Some(holdout) => (holdout, "held-out recordings"),
+        None => (empirical.blocks, "held-out blocks"),
+    };
+    let subject = if words.len() == 1 { "An empirical term models" } else { "Empirical terms model" };
+    format!(
+        " {subject} it, which lowers the error on {on} from {:.2} to {:.2} N: {}.",
+        gain.rmse_without_n,
+        gain.rmse_with_n,
+        words.join("; and ")
+    )
+}
+
+/// Others that draws of blocks choose less often than this are not named.
+const RARELY: f64 = 0.05;
+
+fn stability_of(chosen: &[(Said, f64)]) -> Stability {
+    let others = chosen.iter().skip(1).filter(|(_, share)| *share >= RARELY);
+    Stability {
+        chosen: chosen.first().map_or(0.0, |(_, share)| *share),
+        others: others
+            .map(|(said, share)| StabilityRival {
+                sentence: said.sentence.clone(),
+                words: said::in_short(&said.sentence),
+                chosen: *share,
+            })
+            .collect(),
+    }
+}
