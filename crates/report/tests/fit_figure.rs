@@ -75,7 +75,7 @@ fn the_document_is_well_formed_and_escaped() {
     let svg = fit_figure(&figure(recordings)).unwrap();
     check_document(&svg);
     assert!(svg.contains("<title>Fit of &lt;M&gt; &amp; \"friends\"</title>"));
-    assert!(svg.contains("a&lt;b&gt;&amp;&quot;c&quot;.csv"));
+    assert!(svg.contains("a&lt;b&gt;&amp;\"c\".csv"));
 }
 
 #[test]
