@@ -5,7 +5,7 @@ use pam_cli::{Console, Output, Verdict, publish, write_file};
 use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::{self, CATALOGUE, Effect, Page};
 use pam_diagnosis::explain::{Driven, signature};
-use pam_report::{SignatureFigure, SignaturePanel, SignatureSeries, Table, signature_figure};
+use pam_report::{PictureFormat, SignatureFigure, SignaturePanel, SignatureSeries, Table, signature_figure};
 
 use crate::args::{Args, known};
 
@@ -21,10 +21,11 @@ pub(crate) fn explain(args: &Args, console: &Console, id: &str) -> anyhow::Resul
     }
     let id = known(id).map_err(|message| anyhow!("--explain: {message}"))?;
     let effect = effects::effect(&id).context("an id of the catalogue")?;
-    let figure = args.figure.as_deref().filter(|_| !args.run.check).map(Output::open).transpose()?;
+    let figure = args.figure.as_deref().filter(|_| !args.run.check).map(Output::open_figure).transpose()?;
     write_file("-", text(effect.page()))?;
     if let Some(output) = figure {
-        publish(vec![(output, figure_of(effect)?.into_bytes())], console)?;
+        let format = PictureFormat::of_path(output.path());
+        publish(vec![(output, format.write(figure_of(effect)?)?)], console)?;
     }
     Ok(Verdict::Accepted)
 }

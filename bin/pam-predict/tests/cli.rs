@@ -255,7 +255,7 @@ fn every_bad_input_gets_one_line_with_the_remedy() {
         ),
         (
             "log.csv --model odd.json --out out.csv",
-            "odd.json:28:8: unknown field `shape`, expected one of `schema`, `tool`, `inputs`, `config`, `seed`, `geometry`, `strand_modulus_pa`, `form`, `parameters`, `composites`, `effects`, `correlation`, `fit`, `domain`, `direction`, `standstill_laws`, `quality`, `search`, `unbounded`, `warnings`; expected a pam-model/1 artifact",
+            "odd.json:28:8: unknown field `shape`, expected one of `schema`, `tool`, `inputs`, `config`, `seed`, `muscle_name`, `geometry`, `strand_modulus_pa`, `form`, `parameters`, `composites`, `effects`, `correlation`, `fit`, `domain`, `direction`, `standstill_laws`, `quality`, `search`, `unbounded`, `warnings`; expected a pam-model/1 artifact",
         ),
         ("none.csv --model model.json --out out.csv", "none.csv: no such file; check the path"),
         (

@@ -181,6 +181,7 @@ impl Diagnosis {
             inputs: head.inputs,
             config: self.model.config.clone(),
             seed: head.seed,
+            muscle_name: self.model.muscle_name.clone(),
             geometry: self.model.geometry.clone(),
             strand_modulus_pa: self.model.strand_modulus_pa,
             form: self.model.form,

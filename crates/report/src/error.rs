@@ -30,7 +30,9 @@ pub enum FigureError {
         height: u32,
     },
     /// No font on this machine.
-    #[error("letters of a PNG or PDF need a font and none is installed; install one, such as DejaVu Sans, or write SVG")]
+    #[error(
+        "letters of a PNG or PDF need a font and none is installed; install one, such as DejaVu Sans, or write SVG"
+    )]
     NoFont,
     /// A library that turns SVG into something else gave up.
     #[error("cannot turn the figure into {format}: {reason}; write SVG")]

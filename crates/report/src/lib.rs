@@ -4,7 +4,7 @@
 //! tables take cells and give lines. Equal input gives equal bytes.
 //!
 //! In reading order: [`number`] (how numbers are written), [`Table`], [`plot`] (what figures are made of),
-//! [`fit_figure()`] (the figure of a fit), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
+//! [`fit_figure()`] (the figure of a fit), [`prediction_figure()`] (of a prediction), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
 //! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`signature_figure()`] (what
 //! an effect looks like), [`confusion_figure()`] (what was concealed and what was named).
 
@@ -19,6 +19,7 @@ mod lift_figure;
 pub mod number;
 mod picture;
 pub mod plot;
+mod prediction_figure;
 mod residual_cells;
 mod signature_figure;
 mod table;
@@ -35,5 +36,6 @@ pub use fit_figure::{FitFigure, FitRecording, Role, SwarmStart, fit_figure};
 pub use inverse_figure::{InverseCell, InverseFigure, InverseMap, RegionBar, SlopeCell, SlopeMap, inverse_figure};
 pub use lift_figure::{LiftArm, LiftFigure, lift_figure};
 pub use picture::PictureFormat;
+pub use prediction_figure::{PredictionFigure, prediction_figure};
 pub use signature_figure::{SignatureFigure, SignaturePanel, SignatureSeries, signature_figure};
 pub use table::Table;

@@ -18,6 +18,7 @@ mod catalogue;
 pub mod moment;
 pub mod page;
 pub mod slip;
+pub mod symbols;
 
 mod prony;
 
