@@ -3,6 +3,7 @@
 mod args;
 mod explain;
 mod page;
+mod provenance;
 mod run;
 mod tables;
 

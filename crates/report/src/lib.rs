@@ -3,7 +3,7 @@
 //! Nothing here prints, opens a file or knows a muscle: figures take plain columns and give an SVG document,
 //! tables take cells and give lines. Equal input gives equal bytes.
 //!
-//! In reading order: [`number`] (how numbers are written), [`Table`], [`plot`] (what figures are made of),
+//! In reading order: [`number`] (how numbers are written), [`Table`], [`text`] (what fits a terminal), [`plot`] (what figures are made of),
 //! [`fit_figure()`] (the figure of a fit), [`prediction_figure()`] (of a prediction), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
 //! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`signature_figure()`] (what
 //! an effect looks like), [`confusion_figure()`] (what was concealed and what was named).
@@ -17,18 +17,20 @@ mod fit_figure;
 mod inverse_figure;
 mod lift_figure;
 pub mod number;
+mod page;
 mod picture;
 pub mod plot;
 mod prediction_figure;
 mod residual_cells;
 mod signature_figure;
 mod table;
+pub mod text;
 
 pub use confusion_figure::{ConfusionFigure, confusion_figure};
 pub use diagnosis_page::{
-    DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEvidence,
-    PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording,
-    PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict, diagnosis_page,
+    DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageCoordinate, PageEffect,
+    PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability,
+    PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict, diagnosis_page,
 };
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;

@@ -38,6 +38,9 @@ pub struct Canvas<'a> {
 }
 
 impl Canvas<'_> {
+    /// Units of the document in a pixel, for scripts that draw on it.
+    pub(crate) const UNITS: f64 = FINE;
+
     /// A whole SVG document of `width` × `height` pixels; `title` is what a screen reader says.
     ///
     /// # Errors

@@ -60,7 +60,7 @@ const EXTRAPOLATED: Color = palette::ORANGE.faded(0.25);
 /// Samples that are not counted.
 const UNCOUNTED: Color = palette::SILVER.faded(0.3);
 
-/// Draws the figure, as an SVG document 1200 pixels wide.
+/// Draws the figure, as an SVG document 1000 pixels wide.
 ///
 /// # Errors
 /// [`FigureError`] if no sample can be shown or columns differ in length.
@@ -69,7 +69,7 @@ pub fn prediction_figure(figure: &PredictionFigure) -> Result<String, FigureErro
     let has_force = !figure.force_n.is_empty();
     let rows: &[f64] = if has_force { &[330.0, 220.0, 330.0] } else { &[330.0, 330.0] };
     let height = 74.0 + rows.iter().sum::<f64>();
-    Canvas::document(1200, height as u32, &figure.title, |canvas, sheet| {
+    Canvas::document(1000, height as u32, &figure.title, |canvas, sheet| {
         let page = sheet.inset(12.0, 0.0, 12.0, 8.0);
         canvas.bold(&figure.title, (page.left + 14.0, 24.0), Anchor::Start, 18.0, palette::INK);
         canvas.text(
