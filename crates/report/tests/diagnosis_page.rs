@@ -362,3 +362,40 @@ fn a_confusion_matrix_grows_with_its_names_and_bears_holes() {
         check_document(&confusion_figure(&figure).unwrap());
     }
 }
+
+/// Opens the page in a browser, where there is one.
+#[test]
+fn a_browser_shows_the_page_without_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("report.html");
+    let mut page = full();
+    page.recordings[1].name = "held-out.csv".to_owned();
+    std::fs::write(&path, diagnosis_page(&page).unwrap()).unwrap();
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts/check-report");
+    let Ok(output) = std::process::Command::new("python3").arg(script).arg(&path).output() else {
+        return println!("skipped: python3 is not installed");
+    };
+    let said = String::from_utf8_lossy(&output.stdout);
+    println!("{said}");
+    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn a_page_of_many_long_recordings_stays_small() {
+    let mut page = full();
+    page.recordings = (0..30).map(|index| recording(&format!("{index}.csv"), 20_000, true)).collect();
+    let html = diagnosis_page(&page).unwrap();
+    assert!(html.len() < 1_500_000, "{} bytes", html.len());
+    assert!(html.contains("The 12 of 30 recordings that differ most."));
+}
+
+#[test]
+fn what_explains_nothing_is_folded_away() {
+    let mut page = full();
+    let mut idle = page.candidates[0].clone();
+    (idle.name, idle.explains, idle.outcome) = ("idle effect".to_owned(), 0.0, "explains nothing".to_owned());
+    page.candidates.push(idle);
+    let html = diagnosis_page(&page).unwrap();
+    let folded = html.split("<summary>1 more that explain nothing</summary>").nth(1).unwrap();
+    assert!(folded.split("</details>").next().unwrap().contains("idle effect"));
+}

@@ -24,7 +24,9 @@ fn figure(n: usize) -> PredictionFigure {
 #[test]
 fn band_residual_and_extrapolation_are_there() {
     let svg = prediction_figure(&figure(20_000)).unwrap();
-    for text in ["run &lt;3&gt;", "95 % band", "Residual", "Operating range", "extrapolated", "not counted", "identified on"] {
+    for text in
+        ["run &lt;3&gt;", "95 % band", "Residual", "Operating range", "extrapolated", "not counted", "identified on"]
+    {
         assert!(svg.contains(text), "{text}");
     }
     assert!(!svg.contains("NaN") && svg.len() < 200_000, "{}", svg.len());
