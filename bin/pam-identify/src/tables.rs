@@ -224,7 +224,7 @@ pub(crate) fn agreement(artifact: &ModelArtifact) -> String {
 fn counted(statistics: &FitStatistics) -> String {
     let all = statistics.n_samples + statistics.n_unsettled;
     let percent = 100.0 * statistics.n_samples as f64 / all.max(1) as f64;
-    format!("{percent:.1} % of {all}")
+    format!("{percent:.1} %")
 }
 
 /// What the columns reach without bounds.

@@ -115,6 +115,7 @@ fn base_parameters(parameters: &[PageBaseParameter]) -> Table {
             Some(stderr) => engineering_with_stderr(estimate.value, stderr, &entry.unit),
             None => engineering(estimate.value, &entry.unit, 3),
         };
+        let known = entry.before.stderr.is_some() && entry.after.stderr.is_some();
         let errors: f64 =
             [&entry.before, &entry.after].iter().filter_map(|estimate| estimate.stderr).map(|e| e * e).sum();
         let change = (entry.after.value - entry.before.value) / errors.sqrt();
@@ -125,7 +126,7 @@ fn base_parameters(parameters: &[PageBaseParameter]) -> Table {
             entry.before.status.clone(),
             value(&entry.after),
             entry.after.status.clone(),
-            if change.is_finite() { significant(change, 2) } else { "–".to_owned() },
+            if known && change.is_finite() { significant(change, 2) } else { "–".to_owned() },
         ]);
     }
     rows

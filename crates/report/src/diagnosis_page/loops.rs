@@ -146,9 +146,9 @@ pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
     let x = stretch.column(coordinate);
     let rows = stretch.rows.clone();
     let lines: [(&[f64], Color, f64); 3] = [
-        (&stretch.samples.force_n[rows.clone()], palette::SILVER, 1.6),
-        (&stretch.samples.base_n[rows.clone()], BEFORE, 2.0),
-        (&stretch.model_n[rows], AFTER, 2.0),
+        (&stretch.samples.force_n[rows.clone()], palette::SILVER, 4.0),
+        (&stretch.samples.base_n[rows.clone()], BEFORE, 1.6),
+        (&stretch.model_n[rows], AFTER, 1.6),
     ];
     let course = parabola(x, lines[0].0);
     let without: Vec<Vec<f64>> = lines
@@ -173,7 +173,7 @@ pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
         let without = [0, 1, 2].map(|line| (without[line].as_slice(), lines[line].1, lines[line].2));
         draw(right, "The same, less the mean course of the measured force", "difference (N)", &without);
         let keys = [
-            Key::new("measured", Mark::Line(1.6), palette::SILVER),
+            Key::new("measured", Mark::Line(4.0), palette::SILVER),
             Key::new("base model", Mark::Line(2.0), BEFORE),
             Key::new("with the named effects", Mark::Line(2.0), AFTER),
         ];

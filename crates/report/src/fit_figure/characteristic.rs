@@ -71,8 +71,13 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, (letter, abscissa): (&st
         recordings.iter().filter(|recording| abscissa.is_constant(recording, recordings)).collect();
     let sweeps = sweeps(abscissa, recordings);
     let levels = levels(abscissa, &still);
-    let means: Vec<Mean> = still.iter().flat_map(|recording| means(abscissa, recording, &levels)).collect();
-    if sweeps.is_empty() && curves(&means, 0.0).iter().all(|curve| curve.model.len() < 2) {
+    let mut means: Vec<Mean> = still.iter().flat_map(|recording| means(abscissa, recording, &levels)).collect();
+    // Levels of a single recording are dots one above the other, and no curve.
+    let no_curve = curves(&means, 0.0).iter().all(|curve| curve.model.len() < 2);
+    if no_curve {
+        means.clear();
+    }
+    if sweeps.is_empty() && no_curve {
         agreement(canvas, cell, (letter, abscissa), recordings);
         return;
     }

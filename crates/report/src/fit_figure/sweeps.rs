@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::Role;
 use super::characteristic::Abscissa;
 use super::clean::{Clean, extent, mean};
-use crate::plot::{Timeline, round_levels};
+use crate::plot::round_levels;
 
 /// Share of the range of the other channel within which it stands still.
 const STILL: f64 = 0.05;
@@ -59,25 +59,28 @@ pub(super) fn sweeps<'a>(abscissa: Abscissa, recordings: &'a [Clean]) -> Vec<Swe
     widest_of_each_level(found)
 }
 
-/// Stretches without a gap in which `across` stays within `tolerance`.
+/// Stretches in which `across` stays within `tolerance`. Samples that are left out around a reversal are no gap: a sweep and its
+/// way back belong together.
 fn still(recording: &Clean, across: &[f64], tolerance: f64) -> Vec<Range<usize>> {
     let mut stretches = Vec::new();
-    for segment in (Timeline { time_s: &recording.time_s }).segments() {
-        let (mut start, mut low, mut high) = (segment.start, f64::INFINITY, f64::NEG_INFINITY);
-        for row in segment.clone() {
-            let (lower, higher) = (low.min(across[row]), high.max(across[row]));
-            if higher - lower > tolerance {
-                stretches.push(start..row);
-                (start, low, high) = (row, across[row], across[row]);
-            } else {
-                (low, high) = (lower, higher);
-            }
+    let (mut start, mut low, mut high) = (0, f64::INFINITY, f64::NEG_INFINITY);
+    for row in 0..across.len() {
+        let (lower, higher) = (low.min(across[row]), high.max(across[row]));
+        let step_s = if row > 0 { recording.time_s[row] - recording.time_s[row - 1] } else { 0.0 };
+        if higher - lower > tolerance || !(0.0..=LONGEST_GAP_S).contains(&step_s) {
+            stretches.push(start..row);
+            (start, low, high) = (row, across[row], across[row]);
+        } else {
+            (low, high) = (lower, higher);
         }
-        stretches.push(start..segment.end);
     }
+    stretches.push(start..across.len());
     stretches.retain(|rows| !rows.is_empty());
     stretches
 }
+
+/// A gap that ends a sweep, in s.
+const LONGEST_GAP_S: f64 = 2.0;
 
 fn widest_of_each_level(found: Vec<Sweep<'_>>) -> Vec<Sweep<'_>> {
     let (lowest, highest) = extent(found.iter().map(|sweep| sweep.level));
