@@ -188,6 +188,10 @@ mod tests {
         .expect("equal columns")
     }
 
+    fn pressure(samples: &Samples) -> &[f64] {
+        samples.column(crate::PageCoordinate::Pressure)
+    }
+
     /// Noise between -1 and 1 that is the same every time.
     fn noise(row: usize) -> f64 {
         let mixed = (row as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -202,7 +206,6 @@ mod tests {
         assert!((auto.value[0] - 1.0).abs() < 1e-12);
         let outside = auto.value[1..].iter().filter(|value| value.abs() > auto.band).count();
         assert!(outside <= 4, "{outside}");
-        let pressure = |samples: &Samples| samples.column(super::super::PageCoordinate::Pressure);
         let cross = cross_correlation(white.iter(), |samples| &samples.before_n, pressure).expect("a clock");
         assert!(cross.value.iter().filter(|value| value.abs() > cross.band).count() <= 6);
     }
@@ -211,7 +214,6 @@ mod tests {
     fn a_residual_that_follows_a_channel_is_found_at_its_lag() {
         // 30 samples of 10 ms later; a lag is 50 ms.
         let late = [samples(20_000, |row| noise(row.wrapping_sub(30)), noise)];
-        let pressure = |samples: &Samples| samples.column(super::super::PageCoordinate::Pressure);
         let cross = cross_correlation(late.iter(), |samples| &samples.before_n, pressure).expect("a clock");
         let (lag_s, value) = cross.largest(false);
         assert!((lag_s - 0.3).abs() < 1e-9 && value > 0.95, "{lag_s} {value}");
