@@ -308,8 +308,20 @@ fn degenerate_samples_give_a_page() {
         check_document(&diagnosis_page(&page).unwrap());
     }
     let mut page = bare(PageVerdict::Unexplained, all);
-    page.estimation = PageFit { rmse_before_n: f64::NAN, rmse_after_n: f64::NAN, noise_floor_n: f64::NAN };
-    page.holdout = Some(PageFit { rmse_before_n: 0.0, rmse_after_n: 0.0, noise_floor_n: 0.0 });
+    page.estimation = PageFit {
+        rmse_before_n: f64::NAN,
+        rmse_after_n: f64::NAN,
+        rmse_all_before_n: f64::NAN,
+        rmse_all_after_n: f64::NAN,
+        noise_floor_n: f64::NAN,
+    };
+    page.holdout = Some(PageFit {
+        rmse_before_n: 0.0,
+        rmse_after_n: 0.0,
+        rmse_all_before_n: 0.0,
+        rmse_all_after_n: 0.0,
+        noise_floor_n: 0.0,
+    });
     check_document(&diagnosis_page(&page).unwrap());
 }
 
