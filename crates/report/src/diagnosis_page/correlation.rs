@@ -194,7 +194,7 @@ mod tests {
 
     /// Noise between -1 and 1 that is the same every time.
     fn noise(row: usize) -> f64 {
-        let mixed = (row as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mixed = (row as u64).wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }

@@ -2,7 +2,7 @@
 //!
 //! # Design
 //! Each strip is a figure that needs no script, and carries its samples as whole numbers of 16 bits, so that a script can draw
-//! it anew between any two instants. Sixty thousand samples are 700 kB, which leaves the page below 1.5 MB: with many
+//! it anew between any two instants. Fifty thousand samples are 550 kB, which leaves the page below 1.5 MB: with many
 //! recordings each is thinned.
 
 use std::fmt::Write as _;
@@ -20,7 +20,7 @@ const STRIPS: usize = 12;
 /// Strips that are open from the start.
 const OPEN: usize = 4;
 /// Samples that all strips carry together.
-const SAMPLES: usize = 60_000;
+const SAMPLES: usize = 50_000;
 
 /// What lets a reader zoom, read values off and hide lines. Other pages with strips like these take it from here.
 pub(super) const SCRIPT: &str = include_str!("over_time.js");

@@ -7,8 +7,8 @@ use crate::page::style::{AFTER, BEFORE, MARKED, NOISE};
 use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, Timeline, legend, palette, text_width};
 use crate::residual_cells::quantile;
 
-/// Points of a line, which are one and a half for each pixel.
-const POINTS: usize = 1500;
+/// Points of a line, which are about as many as pixels.
+const POINTS: usize = 1000;
 /// Size of the sheet, in pixels.
 const SHEET: (u32, u32) = (1040, 372);
 /// Force as measured.
