@@ -82,6 +82,7 @@ fn png(tree: &Tree) -> Result<Vec<u8>, FigureError> {
 }
 
 #[cfg(test)]
+#[expect(clippy::print_stdout, reason = "a test that skips says so")]
 mod tests {
     use super::*;
     use crate::plot::{Anchor, Canvas, palette};

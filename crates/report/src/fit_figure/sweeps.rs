@@ -64,12 +64,12 @@ pub(super) fn sweeps<'a>(abscissa: Abscissa, recordings: &'a [Clean]) -> Vec<Swe
 fn still(recording: &Clean, across: &[f64], tolerance: f64) -> Vec<Range<usize>> {
     let mut stretches = Vec::new();
     let (mut start, mut low, mut high) = (0, f64::INFINITY, f64::NEG_INFINITY);
-    for row in 0..across.len() {
-        let (lower, higher) = (low.min(across[row]), high.max(across[row]));
+    for (row, &value) in across.iter().enumerate() {
+        let (lower, higher) = (low.min(value), high.max(value));
         let step_s = if row > 0 { recording.time_s[row] - recording.time_s[row - 1] } else { 0.0 };
         if higher - lower > tolerance || !(0.0..=LONGEST_GAP_S).contains(&step_s) {
             stretches.push(start..row);
-            (start, low, high) = (row, across[row], across[row]);
+            (start, low, high) = (row, value, value);
         } else {
             (low, high) = (lower, higher);
         }
