@@ -1,5 +1,11 @@
 //! The page of a diagnosis, as a document: valid, self-contained, the same every time, and there for any input.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that fails may panic, and one that skips says so"
+)]
+
 use pam_report::{
     ConfusionFigure, DiagnosisPage, FigureError, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate,
     PageCoordinate, PageEffect, PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible,
