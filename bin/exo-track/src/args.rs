@@ -46,7 +46,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "METRICS.json")]
     pub(crate) metrics: Option<PathBuf>,
 
-    /// Figure to write (SVG): angle and its errors, acceleration, pressure and tension, as in Figs 12, 14 and 15.
+    /// Figure to write (SVG, PNG or PDF, by its ending): angle and its errors, acceleration, pressure and tension, as in Figs 12, 14 and 15.
     #[arg(long, value_name = "LIFT.svg")]
     pub(crate) figure: Option<PathBuf>,
 
@@ -54,7 +54,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     pub(crate) trials: Option<u64>,
 
-    /// Figure of the study to write (SVG): errors over time and how they are distributed.
+    /// Figure of the study to write (SVG, PNG or PDF, by its ending): errors over time and how they are distributed.
     #[arg(long, value_name = "ENVELOPE.svg", requires = "trials")]
     pub(crate) trials_figure: Option<PathBuf>,
 

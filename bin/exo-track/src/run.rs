@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
-use pam_cli::{Console, Output, Verdict, pretty_json, publish, write_example};
+use pam_cli::{Console, Output, OutputError, Verdict, pretty_json, publish, write_example};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool, sha256_hex};
 use pam_core::effects::AugmentedModel;
 use pam_core::muscle::Muscle;
@@ -17,6 +17,7 @@ use pam_exo::simulation::Simulation;
 use pam_exo::study::{Study, run_study};
 use pam_exo::uncertainty::Uncertainty;
 use pam_inverse_model::InverseNetwork;
+use pam_report::PictureFormat;
 
 use crate::args::Args;
 use crate::network::Network;
@@ -126,17 +127,19 @@ impl Outputs {
     /// Opens every output before anything is computed.
     fn open(args: &Args) -> anyhow::Result<Self> {
         let inputs = [&args.config, &args.model, &args.inverse, &args.plant];
-        let open = |path: &Option<PathBuf>| {
+        let open_as = |path: &Option<PathBuf>, open: fn(&Path) -> Result<Output, OutputError>| {
             path.as_deref()
                 .filter(|_| !args.run.check)
-                .map(|path| Output::open(path)?.apart_from(inputs.into_iter().flatten()))
+                .map(|path| open(path)?.apart_from(inputs.into_iter().flatten()))
                 .transpose()
         };
+        let open = |path: &Option<PathBuf>| open_as(path, |path| Output::open(path));
+        let open_figure = |path: &Option<PathBuf>| open_as(path, |path| Output::open_figure(path));
         Ok(Self {
             track: open(&args.out)?,
             metrics: open(&args.metrics)?,
-            figure: open(&args.figure)?,
-            trials_figure: open(&args.trials_figure)?,
+            figure: open_figure(&args.figure)?,
+            trials_figure: open_figure(&args.trials_figure)?,
         })
     }
 
@@ -158,10 +161,12 @@ impl Outputs {
             outputs.push((output, pretty_json(artifact)?));
         }
         if let Some(output) = self.figure {
-            outputs.push((output, figure::lift(arms, artifact, beside.as_ref())?.into_bytes()));
+            let format = PictureFormat::of_path(output.path());
+            outputs.push((output, format.write(figure::lift(arms, artifact, beside.as_ref())?)?));
         }
         if let (Some(output), Some(study), Some(trials)) = (self.trials_figure, study, &artifact.trials) {
-            outputs.push((output, figure::envelope(study, trials, plan, beside.as_ref())?.into_bytes()));
+            let format = PictureFormat::of_path(output.path());
+            outputs.push((output, format.write(figure::envelope(study, trials, plan, beside.as_ref())?)?));
         }
         Ok(publish(outputs, console)?)
     }

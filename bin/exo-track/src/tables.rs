@@ -4,6 +4,7 @@ use pam_exo::artifact::{Quantiles, TrialMetrics};
 use pam_exo::metrics::{SignalErrors, TrackingErrors};
 use pam_exo::options::{CASES, Variant};
 use pam_report::Table;
+use pam_report::text::wrapped;
 
 /// One signal of the errors of an arm.
 type Pick = fn(&TrackingErrors) -> SignalErrors;
@@ -33,7 +34,7 @@ pub(crate) fn errors(left: &TrackingErrors, right: &TrackingErrors, paper: Optio
     } else {
         "Errors of the lift (ITAE is the integral of t |e| dt, times s² to the signal's unit)"
     };
-    format!("{heading}\n{}", table.to_terminal())
+    format!("{}\n{}", wrapped(heading, ""), table.to_terminal())
 }
 
 /// Quantiles of a study.
@@ -50,22 +51,21 @@ pub(crate) fn trials(trials: &TrialMetrics) -> String {
         let percent = 100.0 * count as f64 / trials.n_trials as f64;
         format!("{count} ({percent:.2} %)")
     };
-    format!(
-        "{} trials, the worse arm of each: slack {}, saturated {}, given up {}\n{}",
+    let heading = format!(
+        "{} trials, the worse arm of each: slack {}, saturated {}, given up {}",
         trials.n_trials,
         share(trials.n_slack),
         share(trials.n_saturated),
-        share(trials.n_diverged),
-        table.to_terminal()
-    )
+        share(trials.n_diverged)
+    );
+    format!("{}\n{}", wrapped(&heading, ""), table.to_terminal())
 }
 
 /// What each option is worth, in tables of a few cases that fit a terminal.
 pub(crate) fn options(variants: &[Variant]) -> String {
-    let mut text =
-        "What each option is worth: MAX / RMSE of the angle in mrad, over 5 seeds and both arms (! saturated, \
-                    slack or given up)\n"
-            .to_owned();
+    let heading = "What each option is worth: MAX / RMSE of the angle in mrad, over 5 seeds and both arms (! saturated, \
+                    slack or given up)";
+    let mut text = format!("{}\n", wrapped(heading, ""));
     for columns in [0..5, 5..CASES.len()] {
         let mut table = Table::new(["controller"].into_iter().chain(CASES[columns.clone()].iter().copied()));
         for variant in variants {
@@ -75,7 +75,7 @@ pub(crate) fn options(variants: &[Variant]) -> String {
             });
             table.row([variant.name.clone()].into_iter().chain(cells));
         }
-        text += &table.to_terminal().to_string();
+        text += &table.to_terminal();
     }
     text
 }

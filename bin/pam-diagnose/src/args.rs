@@ -84,7 +84,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ID", conflicts_with_all = ["logs", "model", "out", "out_model", "holdout", "report", "next_experiment", "isolability"])]
     pub(crate) explain: Option<String>,
 
-    /// Figure of the explained effect to write (SVG): a loop with and without it, and the residual that it leaves.
+    /// Figure of the explained effect to write (SVG, PNG or PDF, by its ending): a loop with and without it, and the residual that it leaves.
     #[arg(long, value_name = "SIGNATURE.svg")]
     pub(crate) figure: Option<PathBuf>,
 

@@ -3,14 +3,12 @@
 use anyhow::{Context as _, anyhow};
 use pam_cli::{Console, Output, Verdict, publish, write_file};
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::{self, CATALOGUE, Effect, Page};
+use pam_core::effects::{self, CATALOGUE, Effect, Page, Symbol};
 use pam_diagnosis::explain::{Driven, signature};
-use pam_report::{SignatureFigure, SignaturePanel, SignatureSeries, Table, signature_figure};
+use pam_report::text::{hanging, wrapped};
+use pam_report::{PictureFormat, SignatureFigure, SignaturePanel, SignatureSeries, Table, signature_figure};
 
 use crate::args::{Args, known};
-
-/// Columns that text is wrapped to.
-const WIDTH: usize = 100;
 
 /// Prints the page of effect `id`, or every id, and writes the figure if one is wanted.
 pub(crate) fn explain(args: &Args, console: &Console, id: &str) -> anyhow::Result<Verdict> {
@@ -21,10 +19,11 @@ pub(crate) fn explain(args: &Args, console: &Console, id: &str) -> anyhow::Resul
     }
     let id = known(id).map_err(|message| anyhow!("--explain: {message}"))?;
     let effect = effects::effect(&id).context("an id of the catalogue")?;
-    let figure = args.figure.as_deref().filter(|_| !args.run.check).map(Output::open).transpose()?;
+    let figure = args.figure.as_deref().filter(|_| !args.run.check).map(Output::open_figure).transpose()?;
     write_file("-", text(effect.page()))?;
     if let Some(output) = figure {
-        publish(vec![(output, figure_of(effect)?.into_bytes())], console)?;
+        let format = PictureFormat::of_path(output.path());
+        publish(vec![(output, format.write(figure_of(effect)?)?)], console)?;
     }
     Ok(Verdict::Accepted)
 }
@@ -43,14 +42,18 @@ fn text(page: &Page) -> String {
     let mut text = format!("{} ({})\n\n{}\n", capitalized(page.name), page.id, wrapped(page.summary, ""));
     text.push_str("\nEquation\n");
     for line in page.equation.split(",  ") {
-        text.push_str(&format!("  {}\n", line.trim()));
+        text.push_str(&format!("{}\n", hanging(line.trim(), "  ", "      ")));
     }
-    let mut symbols = Table::new(["symbol", "unit", "meaning"]);
-    for symbol in page.symbols {
-        symbols.row([symbol.symbol, symbol.unit, symbol.meaning]);
+    text.push_str("\nSymbols\n");
+    let widest =
+        |of: fn(&Symbol) -> &str| page.symbols.iter().map(|symbol| of(symbol).chars().count()).max().unwrap_or(0);
+    let (names, units) = (widest(|symbol| symbol.symbol), widest(|symbol| symbol.unit));
+    for Symbol { symbol, unit, meaning } in page.symbols {
+        let first = format!("  {symbol:<names$}  {unit:<units$}  ");
+        let indent = " ".repeat(first.chars().count());
+        text.push_str(&format!("{}\n", hanging(meaning, &first, &indent)));
     }
-    text.push_str(&format!("\n{}", symbols.to_terminal()));
-    for (title, words) in [("Holds", page.validity), ("Source", page.source), ("Signature", page.signature)] {
+    for (title, words) in [("Assumptions", page.validity), ("Source", page.source), ("Signature", page.signature)] {
         text.push_str(&format!("\n{title}\n{}\n", wrapped(words, "  ")));
     }
     text.push_str("\nConfused with\n");
@@ -71,24 +74,6 @@ fn ended(text: &str) -> &str {
 fn capitalized(text: &str) -> String {
     let mut characters = text.chars();
     characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
-}
-
-/// `text` in lines of at most [`WIDTH`] columns, each behind `indent`.
-fn wrapped(text: &str, indent: &str) -> String {
-    let mut lines = vec![indent.to_owned()];
-    for word in text.split_whitespace() {
-        let line = lines.last_mut().expect("there is a line");
-        let empty = line.len() == indent.len();
-        if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            lines.push(format!("{indent}{word}"));
-        } else {
-            if !empty {
-                line.push(' ');
-            }
-            line.push_str(word);
-        }
-    }
-    lines.join("\n")
 }
 
 /// The figure of an effect as SVG.

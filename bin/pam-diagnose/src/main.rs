@@ -4,6 +4,7 @@ mod args;
 mod empirical;
 mod explain;
 mod page;
+mod provenance;
 mod run;
 mod tables;
 

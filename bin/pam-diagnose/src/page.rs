@@ -4,21 +4,30 @@ use pam_core::artifact::diagnosis::{AsGiven, BeforeAfter, Coordinate, Evidence, 
 use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
 use pam_core::artifact::{DiagnosisArtifact, InputRole, ModelArtifact};
 use pam_core::effects::page::Confusion;
+use pam_core::effects::symbols::{symbol_of_base, symbol_of_effect};
 use pam_core::effects::{self, Page, Symbol};
 use pam_diagnosis::traces::Trace;
 use pam_report::{
-    DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEvidence,
-    PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording,
-    PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
+    DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageCoordinate, PageEffect,
+    PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability,
+    PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
 };
 
 use crate::empirical;
+use crate::provenance::Provenance;
 
 /// Everything that the report shows.
-pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: Vec<Trace>) -> DiagnosisPage {
+///
+/// `model` is the one that was diagnosed, `augmented` the one with the effects.
+pub(crate) fn page(
+    artifact: &DiagnosisArtifact,
+    [model, augmented]: [&ModelArtifact; 2],
+    traces: Vec<Trace>,
+    provenance: Provenance,
+) -> DiagnosisPage {
     let with_effects = !artifact.effects.is_empty() || artifact.empirical.is_some();
     DiagnosisPage {
-        title: title(model),
+        title: format!("Diagnosis of {}", model.muscle_title()),
         verdict: match artifact.verdict {
             Verdict::Consistent => PageVerdict::Consistent,
             Verdict::Explained => PageVerdict::Explained,
@@ -31,6 +40,7 @@ pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: 
         as_given: artifact.as_given.as_ref().map(given),
         estimation: fit(&artifact.fit.estimation),
         holdout: artifact.fit.holdout.as_ref().map(fit),
+        base_parameters: if with_effects { base_parameters(model, augmented) } else { Vec::new() },
         recordings: traces.into_iter().map(|trace| recording(trace, artifact, with_effects)).collect(),
         regions: significant(&artifact.regions).map(region).collect(),
         effects: artifact.effects.iter().map(effect).collect(),
@@ -47,7 +57,6 @@ pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: 
             })
             .collect(),
         unknown: PageUnknown {
-            unexplained_share: artifact.unexplained_share,
             regions: significant(&artifact.unexplained_where).map(region).collect(),
             implausible: artifact
                 .implausible
@@ -75,17 +84,46 @@ pub(crate) fn page(artifact: &DiagnosisArtifact, model: &ModelArtifact, traces: 
                 cosine: isolability.cosine.clone(),
             }
         }),
-        appendix: appendix(artifact),
+        appendix: appendix(artifact, model, provenance),
     }
 }
 
-fn title(model: &ModelArtifact) -> String {
-    let muscle = &model.geometry;
-    format!(
-        "Diagnosis of a muscle of {:.0} mm, radius {:.1} mm",
-        1e3 * muscle.rest_length_m,
-        1e3 * muscle.rest_radius_m
-    )
+/// Free base parameters, composites and fitted dimensions of both models; what was fixed in both is left out.
+fn base_parameters(model: &ModelArtifact, augmented: &ModelArtifact) -> Vec<PageBaseParameter> {
+    let estimate = |value: f64, stderr: Option<f64>, status: Option<ParameterStatus>| PageEstimate {
+        value,
+        stderr,
+        status: match status {
+            Some(ParameterStatus::AtBound) => "at its bound",
+            Some(ParameterStatus::Fixed) => "held",
+            Some(ParameterStatus::Fitted | ParameterStatus::Composite) | None => "",
+        }
+        .to_owned(),
+    };
+    let parameters = model.parameters.iter().filter_map(|before| {
+        let after = augmented.parameters.iter().find(|after| after.name == before.name)?;
+        // A member of a composite has no value of its own.
+        let is_free =
+            |entry: &ParameterEntry| matches!(entry.status, ParameterStatus::Fitted | ParameterStatus::AtBound);
+        (is_free(before) || is_free(after)).then(|| PageBaseParameter {
+            name: before.name.clone(),
+            symbol: symbol_of_base(&before.name).unwrap_or_default().to_owned(),
+            unit: before.unit.clone(),
+            before: estimate(before.value, before.stderr, Some(before.status)),
+            after: estimate(after.value, after.stderr, Some(after.status)),
+        })
+    });
+    let composites = model.composites.iter().filter_map(|before| {
+        let after = augmented.composites.iter().find(|after| after.name == before.name)?;
+        Some(PageBaseParameter {
+            name: before.name.clone(),
+            symbol: symbol_of_base(&before.name).unwrap_or_default().to_owned(),
+            unit: before.unit.clone(),
+            before: estimate(before.value, before.stderr, None),
+            after: estimate(after.value, after.stderr, None),
+        })
+    });
+    parameters.chain(composites).collect()
 }
 
 /// Page of an effect in the catalogue; a competitor without a name has none.
@@ -98,13 +136,14 @@ fn name(id: &str) -> String {
 }
 
 fn fit(fit: &BeforeAfter) -> PageFit {
-    PageFit { rmse_before_n: fit.rmse_before_n, rmse_after_n: fit.rmse_after_n, noise_floor_n: fit.noise_floor_n }
+    let BeforeAfter { rmse_before_n, rmse_after_n, rmse_all_before_n, rmse_all_after_n, noise_floor_n } = *fit;
+    PageFit { rmse_before_n, rmse_after_n, rmse_all_before_n, rmse_all_after_n, noise_floor_n }
 }
 
 fn given(given: &AsGiven) -> PageGiven {
     PageGiven {
-        rmse_n: given.estimation.rmse_n,
-        holdout_rmse_n: given.holdout.map(|residual| residual.rmse_n),
+        rmse_n: [given.estimation.rmse_n, given.estimation.rmse_all_n],
+        holdout_rmse_n: given.holdout.map(|residual| [residual.rmse_n, residual.rmse_all_n]),
         refitted_rmse_n: given.refitted.rmse_n,
         misses: given.misses,
         instrument: given.instrument.clone(),
@@ -176,7 +215,7 @@ fn effect(effect: &pam_core::artifact::diagnosis::NamedEffect) -> PageEffect {
         symbols: page.map_or(&[][..], |page| page.symbols).iter().map(symbol).collect(),
         validity: page.map_or(String::new(), |page| page.validity.to_owned()),
         source: page.map_or(String::new(), |page| page.source.to_owned()),
-        parameters: effect.parameters.iter().map(parameter).collect(),
+        parameters: effect.parameters.iter().map(|entry| parameter(&effect.id, entry)).collect(),
         evidence: evidence(&effect.evidence),
         alternatives: effect.alternatives.iter().map(|id| alternative(id, confusions)).collect(),
         look_alikes: confusions
@@ -203,9 +242,10 @@ fn alternative(id: &str, confusions: &[Confusion]) -> PageAlternative {
     }
 }
 
-fn parameter(entry: &ParameterEntry) -> PageParameter {
+fn parameter(id: &str, entry: &ParameterEntry) -> PageParameter {
     PageParameter {
         name: entry.name.clone(),
+        symbol: symbol_of_effect(id, &entry.name).unwrap_or_default().to_owned(),
         meaning: String::new(),
         value: entry.value,
         unit: entry.unit.clone(),
@@ -213,7 +253,7 @@ fn parameter(entry: &ParameterEntry) -> PageParameter {
         status: match entry.status {
             ParameterStatus::Fitted => "fitted",
             ParameterStatus::Fixed => "not seen by these recordings",
-            ParameterStatus::Composite => "share of a composite",
+            ParameterStatus::Composite => "not separately identifiable",
             ParameterStatus::AtBound => "at the end of its range",
         }
         .to_owned(),
@@ -245,7 +285,7 @@ fn recording(trace: Trace, artifact: &DiagnosisArtifact, with_effects: bool) -> 
     }
 }
 
-fn appendix(artifact: &DiagnosisArtifact) -> PageAppendix {
+fn appendix(artifact: &DiagnosisArtifact, model: &ModelArtifact, provenance: Provenance) -> PageAppendix {
     let config = &artifact.config;
     let matters = match config.matters_above_n {
         Some(limit_n) => format!("{limit_n} N"),
@@ -254,6 +294,9 @@ fn appendix(artifact: &DiagnosisArtifact) -> PageAppendix {
     let excluded = if config.excluded.is_empty() { "none".to_owned() } else { config.excluded.join(", ") };
     PageAppendix {
         tool: format!("{} {}", artifact.tool.name, artifact.tool.version),
+        muscle: model.muscle_title(),
+        command: provenance.command,
+        date: provenance.date,
         inputs: artifact
             .inputs
             .iter()

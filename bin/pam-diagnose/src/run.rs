@@ -11,6 +11,7 @@ use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose_observed};
 use pam_diagnosis::traces::traces;
 
 use crate::args::Args;
+use crate::provenance::Provenance;
 use crate::{explain, page, tables};
 
 /// Samples of each recording that the report draws, at most.
@@ -86,8 +87,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
         let matrix = tables::isolability(&artifact);
         if to_stdout { console.text(matrix) } else { pam_cli::write_file("-", matrix)? }
     }
-    let augmented = outputs.model.is_some().then(|| found.model_artifact(head, &agreement));
-    outputs.write(&console, &found, &artifact, augmented.as_ref())?;
+    let wanted = outputs.model.is_some() || outputs.report.is_some();
+    let augmented = wanted.then(|| found.model_artifact(head, &agreement));
+    let provenance = Provenance::of_this_run(args.logs.iter().chain(&args.holdout).map(PathBuf::as_path));
+    outputs.write(&console, &found, &artifact, (augmented.as_ref(), provenance))?;
     Ok(match artifact.verdict {
         Verdict::Consistent | Verdict::Explained | Verdict::Ambiguous => pam_cli::Verdict::Accepted,
         Verdict::ExplainedInPart | Verdict::Unexplained => pam_cli::Verdict::Rejected,
@@ -113,7 +116,7 @@ impl Outputs {
         console: &Console,
         found: &Diagnosis,
         artifact: &DiagnosisArtifact,
-        augmented: Option<&ModelArtifact>,
+        (augmented, provenance): (Option<&ModelArtifact>, Provenance),
     ) -> anyhow::Result<()> {
         let mut outputs = Vec::new();
         if let Some(output) = self.out {
@@ -122,8 +125,8 @@ impl Outputs {
         if let (Some(output), Some(model)) = (self.model, augmented) {
             outputs.push((output, pretty_json(model)?));
         }
-        if let Some(output) = self.report {
-            let page = page::page(artifact, &found.model, traces(found, REPORT_SAMPLES)?);
+        if let (Some(output), Some(augmented)) = (self.report, augmented) {
+            let page = page::page(artifact, [&found.model, augmented], traces(found, REPORT_SAMPLES)?, provenance);
             outputs.push((output, pam_report::diagnosis_page(&page)?.into_bytes()));
         }
         match (self.next, &found.next_experiment) {

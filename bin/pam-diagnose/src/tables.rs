@@ -1,11 +1,12 @@
 //! What a person reads on the terminal.
 
 use pam_core::artifact::DiagnosisArtifact;
-use pam_core::artifact::diagnosis::{BeforeAfter, Residual, Verdict};
+use pam_core::artifact::diagnosis::{BeforeAfter, Region, Residual, Verdict};
 use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
 use pam_diagnosis::words;
 use pam_report::Table;
 use pam_report::number::{engineering, engineering_with_stderr, probability, significant};
+use pam_report::text::{shortened, wrapped};
 
 use crate::{empirical, page};
 
@@ -16,12 +17,15 @@ const REGIONS: usize = 3;
 
 /// Verdict and everything that it rests on.
 pub(crate) fn all(artifact: &DiagnosisArtifact) -> String {
-    let mut text = format!("{}: {}\n", word(artifact.verdict), artifact.statement);
+    let mut text = wrapped(&format!("{}: {}", word(artifact.verdict), artifact.statement), "");
+    text.push('\n');
+    let left = unexplained(artifact);
     let parts = [
         effects(artifact),
         empirical::table(artifact),
         Some(fit(artifact)),
         regions(artifact),
+        left,
         candidates(artifact),
         next(artifact),
     ];
@@ -47,24 +51,19 @@ fn effects(artifact: &DiagnosisArtifact) -> Option<String> {
     if artifact.effects.is_empty() {
         return None;
     }
-    let mut table = Table::new(["effect", "parameter", "value", "held-out blocks N", "improved", "p"]);
+    let mut table = Table::new(["effect", "value", "validation RMSE N", "p"]);
     for effect in &artifact.effects {
         let evidence = &effect.evidence;
-        let mut once = [
-            format!("{} → {}", significant(evidence.rmse_without_n, 3), significant(evidence.rmse_with_n, 3)),
-            format!("{} of {}", evidence.blocks_improved, evidence.n_blocks),
-            probability(evidence.p_value),
-        ];
-        let mut name = effect.id.clone();
+        let gain = format!("{} → {}", significant(evidence.rmse_without_n, 3), significant(evidence.rmse_with_n, 3));
+        table.row([effect.id.clone(), String::new(), gain, probability(evidence.p_value)]);
         for parameter in &effect.parameters {
-            let [gain, blocks, p] = std::mem::take(&mut once);
-            table.row([std::mem::take(&mut name), parameter.name.clone(), value(parameter), gain, blocks, p]);
+            table.row([format!("  {}", parameter.name), value(parameter)]);
         }
         for other in &effect.alternatives {
             table.row([format!("  or {other}")]);
         }
     }
-    Some(format!("What was left out\n{}", table.to_terminal()))
+    Some(format!("Missing physics\n{}", table.to_terminal()))
 }
 
 fn value(entry: &ParameterEntry) -> String {
@@ -79,46 +78,54 @@ fn value(entry: &ParameterEntry) -> String {
     }
 }
 
-/// Residuals before and after.
+/// Residuals before and after, over counted and over all samples.
 fn fit(artifact: &DiagnosisArtifact) -> String {
-    let mut table = Table::new(["residual, rms", "as given N", "base N", "with effects N", "noise floor N"]);
-    let mut row = |name: &str, given: Option<Residual>, fit: &BeforeAfter| {
-        let given = given.map_or("-".to_owned(), |given| significant(given.rmse_n, 3));
-        let after = if artifact.effects.is_empty() && artifact.empirical.is_none() {
-            "-".to_owned()
-        } else {
-            significant(fit.rmse_after_n, 3)
-        };
-        let (before, floor) = (significant(fit.rmse_before_n, 3), significant(fit.noise_floor_n, 3));
-        table.row([name.to_owned(), given, before, after, floor]);
+    let mut table = Table::new(["RMSE", "samples", "as given N", "refitted N", "with effects N", "noise N"]);
+    let with_effects = !artifact.effects.is_empty() || artifact.empirical.is_some();
+    let mut rows = |name: &str, given: Option<Residual>, fit: &BeforeAfter| {
+        let counted = [given.map(|given| given.rmse_n), Some(fit.rmse_before_n), Some(fit.rmse_after_n)];
+        let all = [given.map(|given| given.rmse_all_n), Some(fit.rmse_all_before_n), Some(fit.rmse_all_after_n)];
+        let floor = significant(fit.noise_floor_n, 3);
+        for (name, samples, [given, before, after], floor) in
+            [(name, "counted", counted, floor), ("", "all", all, String::new())]
+        {
+            let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| significant(value, 3));
+            let after = number(after.filter(|_| with_effects));
+            table.row([name.to_owned(), samples.to_owned(), number(given), number(before), after, floor]);
+        }
     };
     let given = artifact.as_given.as_ref();
-    row("estimation", given.map(|given| given.estimation), &artifact.fit.estimation);
+    rows("estimation", given.map(|given| given.estimation), &artifact.fit.estimation);
     if let Some(holdout) = &artifact.fit.holdout {
-        row("held out", given.and_then(|given| given.holdout), holdout);
+        rows("held out", given.and_then(|given| given.holdout), holdout);
     }
     table.to_terminal()
 }
 
-/// Where the mismatch lies, and where what is left does.
+/// Where the mismatch lies.
 fn regions(artifact: &DiagnosisArtifact) -> Option<String> {
-    let mut table = Table::new(["where", "share", "p", ""]);
-    let left = page::significant(&artifact.unexplained_where).map(|region| (region, "left without a name"));
     // Where nothing is named, what is left is all there is.
-    let of_all = if artifact.effects.is_empty() && !artifact.unexplained_where.is_empty() { 0 } else { REGIONS };
-    let of_all = page::significant(&artifact.regions).take(of_all).map(|region| (region, ""));
-    for (region, remark) in of_all.chain(left.take(REGIONS)) {
-        let recording =
-            region.recording.as_deref().map_or(String::new(), |path| format!(", {}", page::short_name(path)));
+    let repeats = artifact.effects.is_empty() && !artifact.unexplained_where.is_empty();
+    (!repeats).then(|| places("where the mismatch lies", &artifact.regions)).flatten()
+}
+
+/// Where what is left lies.
+fn unexplained(artifact: &DiagnosisArtifact) -> Option<String> {
+    places("where unmodelled structure is left", &artifact.unexplained_where)
+}
+
+fn places(title: &str, regions: &[Region]) -> Option<String> {
+    let mut table = Table::new([title, "share", "p"]);
+    for region in page::significant(regions).take(REGIONS) {
+        let name = region.recording.as_deref().map(page::short_name);
+        let recording = name.map_or(String::new(), |name| format!(", {}", shortened(&name, 12)));
         table.row([
             format!("{}{recording}", words::place(region)),
             format!("{:.0} %", 100.0 * region.share_of_excess),
             probability(region.p_value),
-            remark.to_owned(),
         ]);
     }
-    let empty = artifact.regions.is_empty() && artifact.unexplained_where.is_empty();
-    (!empty).then(|| table.to_terminal())
+    (!regions.is_empty()).then(|| table.to_terminal())
 }
 
 /// What was weighed, the best first.
@@ -126,14 +133,9 @@ fn candidates(artifact: &DiagnosisArtifact) -> Option<String> {
     if artifact.candidates.is_empty() {
         return None;
     }
-    let mut table = Table::new(["candidate, alone", "explains", "evidence", "outcome"]);
+    let mut table = Table::new(["candidate, alone", "explains", "outcome"]);
     for candidate in artifact.candidates.iter().take(CANDIDATES) {
-        table.row([
-            candidate.id.clone(),
-            format!("{:.0} %", 100.0 * candidate.explains),
-            format!("{:.1}", candidate.evidence.log_ratio),
-            candidate.outcome.clone(),
-        ]);
+        table.row([candidate.id.clone(), format!("{:.0} %", 100.0 * candidate.explains), candidate.outcome.clone()]);
     }
     Some(table.to_terminal())
 }
@@ -141,12 +143,14 @@ fn candidates(artifact: &DiagnosisArtifact) -> Option<String> {
 /// What to record next.
 fn next(artifact: &DiagnosisArtifact) -> Option<String> {
     if let Some(next) = &artifact.next_experiment {
-        return Some(format!("What to record next: {}\n", next.instruction));
+        return Some(format!("{}\n", wrapped(&format!("What to record next: {}", next.instruction), "")));
     }
     let lines: Vec<String> = artifact
         .effects
         .iter()
-        .map(|effect| format!("Test that decides on {}: {}\n", effect.id, effect.separating_test))
+        .map(|effect| {
+            format!("{}\n", wrapped(&format!("Test that decides on {}: {}", effect.id, effect.separating_test), ""))
+        })
         .collect();
     (!lines.is_empty()).then(|| lines.concat())
 }
@@ -154,40 +158,44 @@ fn next(artifact: &DiagnosisArtifact) -> Option<String> {
 /// Cosines of which less is said.
 const FAINT: f64 = 0.3;
 
-/// Which effects the recordings could tell apart: a matrix of those that they would show.
+/// Rivals that are listed beside an effect.
+const RIVALS: usize = 2;
+
+/// Which effects the recordings could tell apart: each with those that it looks most like.
 pub(crate) fn isolability(artifact: &DiagnosisArtifact) -> String {
     let found = &artifact.isolability;
     // What stays hidden is compared with nothing.
     let compared =
         |index: &usize| found.cosine[*index].iter().enumerate().any(|(at, &cosine)| at != *index && cosine > 0.0);
     let (shown, hidden): (Vec<usize>, Vec<usize>) = (0..found.ids.len()).partition(compared);
-    let mut header = vec!["".to_owned(), "effect".to_owned(), "leaves N".to_owned()];
-    header.extend((1..=shown.len()).map(|number| number.to_string()));
-    let mut table = Table::new(header);
-    for (number, &row) in shown.iter().enumerate() {
-        let mut cells = vec![(number + 1).to_string(), found.ids[row].clone(), significant(found.visible_n[row], 2)];
-        cells.extend(shown.iter().map(|&column| {
-            let cosine = found.cosine[row][column].abs();
-            if row == column {
-                "-".to_owned()
-            } else if cosine < FAINT {
-                String::new()
-            } else {
-                format!("{:.0}", 100.0 * cosine)
-            }
-        }));
-        table.row(cells);
+    let mut table = Table::new(["effect", "leaves N", "looks most like", "cosine"]);
+    for &row in &shown {
+        let mut others: Vec<usize> = shown.iter().copied().filter(|other| *other != row).collect();
+        others.sort_by(|&a, &b| found.cosine[row][b].abs().total_cmp(&found.cosine[row][a].abs()));
+        let mut name = found.ids[row].clone();
+        let mut leaves = significant(found.visible_n[row], 2);
+        let rivals = others.into_iter().filter(|&other| found.cosine[row][other].abs() >= FAINT).take(RIVALS);
+        let mut rivals: Vec<(String, String)> =
+            rivals.map(|other| (found.ids[other].clone(), format!("{:.2}", found.cosine[row][other].abs()))).collect();
+        if rivals.is_empty() {
+            rivals.push(("nothing else".to_owned(), String::new()));
+        }
+        for (rival, cosine) in rivals {
+            table.row([std::mem::take(&mut name), std::mem::take(&mut leaves), rival, cosine]);
+        }
     }
     let hidden: Vec<&str> = hidden.into_iter().map(|index| found.ids[index].as_str()).collect();
     let hidden = if hidden.is_empty() {
         String::new()
     } else {
-        format!("Hidden in the noise at a typical size: {}\n", hidden.join(", "))
+        wrapped(&format!("Hidden in the noise at a typical size: {}", hidden.join(", ")), "") + "\n"
     };
-    format!(
-        "What these recordings could tell apart: residual of each effect at a typical size after a refit of the base, and \
-         100 times the cosine between the residuals of two (100 looks the same, blank is below {:.0})\n{}{hidden}",
-        100.0 * FAINT,
-        table.to_terminal()
-    )
+    let heading = wrapped(
+        &format!(
+            "Distinguishability: what each effect leaves at a typical size after a refit of the base, and the effects whose \
+             residuals are most similar (a cosine of 1 is the same, below {FAINT:.1} is left out; the report has the matrix)"
+        ),
+        "",
+    );
+    format!("{heading}\n{}{hidden}", table.to_terminal())
 }

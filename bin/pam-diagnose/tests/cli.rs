@@ -39,7 +39,7 @@ struct Desk {
 impl Desk {
     fn with(concealed: &[Concealed]) -> Self {
         let desk = Self { folder: tempfile::tempdir().unwrap() };
-        let MuscleFile { muscle, strand_modulus_pa, .. } = muscle_file();
+        let MuscleFile { name: None, muscle, strand_modulus_pa, .. } = muscle_file();
         let truth = TrueMuscle::new(muscle, strand_modulus_pa, Parameters::nominal());
         let options = Options { duration_scale: 0.2, ..Options::default() };
         for (seed, protocol) in FITTED.into_iter().chain(["multisine"]).enumerate() {
@@ -167,8 +167,14 @@ fn finds(desk: &Desk, id: &str, folder_tag: &str) {
     assert_eq!(model.tool.name, "pam-diagnose");
     let report = std::fs::read_to_string(desk.path(&format!("{folder_tag}.html"))).unwrap();
     assert!(report.contains(&diagnosis.effects[0].separating_test) && report.contains("<svg"));
-    // Neither scripts nor anything from elsewhere.
-    assert!(!report.contains("<script") && !report.contains("src=\"http"));
+    // Nothing from elsewhere, and the headline says what the artifact and the cards say.
+    assert!(!report.contains("src=") && !report.contains("<link") && report.len() < 1_500_000, "{}", report.len());
+    let headline =
+        format!("from {:.2} to {:.2} N", diagnosis.fit.estimation.rmse_before_n, diagnosis.fit.estimation.rmse_after_n);
+    assert!(diagnosis.statement.contains(&headline) && report.contains(&headline), "{}", diagnosis.statement);
+    assert!(
+        report.contains("Base parameters before and after") && report.contains("<pre class=\"command\">pam-diagnose ")
+    );
 }
 
 #[test]

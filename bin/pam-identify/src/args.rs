@@ -42,7 +42,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LOG")]
     pub(crate) holdout: Vec<PathBuf>,
 
-    /// Figure to write (SVG): force, residual and convergence.
+    /// Figure to write (SVG, PNG or PDF, by its ending): force, residual and convergence.
     #[arg(long, value_name = "FIT.svg")]
     pub(crate) figure: Option<PathBuf>,
 

@@ -36,12 +36,15 @@ pub(crate) fn svg(found: &Identified, artifact: &ModelArtifact) -> anyhow::Resul
         })
         .collect();
     let starts = found.convergence_n().into_iter().zip(&artifact.search.starts);
-    let title = match artifact.form {
-        pam_core::force::Form::Corrected => "Eq. 11 fitted",
-        pam_core::force::Form::AsPrinted => "Eq. 11 as printed, fitted",
+    let form = match artifact.form {
+        pam_core::force::Form::Corrected => "eq. 11 fitted",
+        pam_core::force::Form::AsPrinted => "eq. 11 as printed, fitted",
     };
+    let muscle = artifact.muscle_title();
+    let mut letters = muscle.chars();
+    let muscle: String = letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect();
     Ok(fit_figure(&FitFigure {
-        title: title.to_owned(),
+        title: format!("{muscle}: {form}"),
         recordings,
         noise_floor_n: Some(artifact.fit.noise_floor_n),
         rmse_estimation_n: Some(artifact.fit.estimation.rmse_n),

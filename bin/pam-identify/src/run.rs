@@ -13,6 +13,7 @@ use pam_identification::faults::{spikes, twice, zero};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
+use pam_report::PictureFormat;
 
 use crate::args::{Args, BladderArg, FormArg, FrictionArg};
 use crate::{figure, tables};
@@ -53,7 +54,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.muscle);
     let open = |path: &Path| Output::open(path)?.apart_from(inputs());
     let out = args.out.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
-    let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
+    let open_figure = |path: &Path| Output::open_figure(path)?.apart_from(inputs());
+    let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open_figure).transpose()?;
 
     let (muscle, muscle_input) = read_muscle(muscle_path)?;
     let estimation = read_recordings(&args.logs, &args.read.options(), &console)?;
@@ -77,6 +79,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     drop(progress);
     let tool = Tool { name: "pam-identify".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
     let mut artifact = found.artifact(tool, hashes, config, args.run.seed);
+    artifact.muscle_name = muscle.name.clone();
     for prepared in found.estimation.iter().chain(&found.validation) {
         artifact.warnings.extend(spikes::warning(&prepared.recording, &prepared.quality)?);
     }
@@ -120,7 +123,8 @@ fn write(
         outputs.push((output, artifact.json()?));
     }
     if let Some(output) = figure_out {
-        outputs.push((output, figure::svg(found, artifact)?.into_bytes()));
+        let format = PictureFormat::of_path(output.path());
+        outputs.push((output, format.write(figure::svg(found, artifact)?)?));
     }
     Ok(publish(outputs, console)?)
 }

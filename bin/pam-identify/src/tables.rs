@@ -1,46 +1,104 @@
 //! What a person reads on the terminal.
 
 use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
-use pam_core::quality::ChannelQuality;
+use pam_core::artifact::model::{FitStatistics, ParameterEntry, ParameterStatus};
+use pam_core::quality::{ChannelQuality, RecordingQuality};
 use pam_identification::prepare::Gated;
 use pam_report::Table;
 use pam_report::number::{engineering, significant, with_stderr};
+use pam_report::text::{shortened, wrapped};
 
-/// The quality gate: one row per channel.
+/// The quality gate: a row per channel of a single recording; of several, a row each with what is odd.
 pub(crate) fn gate(gates: &[Gated]) -> String {
-    let mut table = Table::new(["recording", "channel", "range", "noise", "step", "stuck", "fastest", "clock"]);
-    for gate in gates {
-        let quality = &gate.quality;
-        let clock = format!("{} rows, {} Hz", quality.n_rows, significant(1.0 / quality.period_s.max(1e-12), 4));
-        let breaks = match quality.repairs.gaps {
-            0 => String::new(),
-            1 => "1 gap".to_owned(),
-            gaps => format!("{gaps} gaps"),
+    let table = match gates {
+        [one] => channels(&one.quality),
+        many => overview(many),
+    };
+    format!("Recordings\n{}", table.to_terminal())
+}
+
+/// One recording, channel by channel.
+fn channels(quality: &RecordingQuality) -> Table {
+    let mut table = Table::new(["channel", "range", "noise", "step", "stuck", "fastest"]);
+    for channel in &quality.channels {
+        let fastest = match channel.name.as_str() {
+            "pressure" => engineering(quality.pressure_rate_pa_per_s, "Pa/s", 3),
+            "length" => engineering(quality.length_rate_m_per_s, "m/s", 3),
+            _ => String::new(),
         };
-        for (index, channel) in quality.channels.iter().enumerate() {
-            let fastest = match channel.name.as_str() {
-                "pressure" => engineering(quality.pressure_rate_pa_per_s, "Pa/s", 3),
-                "length" => engineering(quality.length_rate_m_per_s, "m/s", 3),
-                _ => String::new(),
-            };
-            table.row([
-                if index == 0 { short_name(&quality.path) } else { String::new() },
-                channel.name.clone(),
-                range(channel),
-                engineering(channel.noise, &channel.unit, 2),
-                channel.quantization_step.map_or_else(|| "-".to_owned(), |step| engineering(step, &channel.unit, 3)),
-                stuck(channel),
-                fastest,
-                match index {
-                    0 => clock.clone(),
-                    1 => breaks.clone(),
-                    _ => String::new(),
-                },
-            ]);
+        table.row([
+            channel.name.clone(),
+            range(channel),
+            engineering(channel.noise, &channel.unit, 2),
+            channel.quantization_step.map_or_else(|| "-".to_owned(), |step| engineering(step, &channel.unit, 3)),
+            stuck(channel),
+            fastest,
+        ]);
+    }
+    let rate = significant(1.0 / quality.period_s.max(1e-12), 4);
+    let gaps = gaps(quality).map_or(String::new(), |gaps| format!(", {gaps}"));
+    table.row(["clock".to_owned(), format!("{} rows, {rate} Hz{gaps}", quality.n_rows)]);
+    table
+}
+
+/// Columns of a recording's name among many.
+const NAME: usize = 22;
+
+/// Many recordings, a row each: noise of the channels, and what is odd.
+fn overview(gates: &[Gated]) -> Table {
+    let mut table = Table::new(["recording", "rows", "Hz", "noise of p", "of L", "of F", "odd"]);
+    for Gated { quality, .. } in gates {
+        let noise = |name: &str| {
+            let channel = quality.channel(name);
+            channel.map_or("-".to_owned(), |channel| engineering(channel.noise, &channel.unit, 2))
+        };
+        let mut odd = odd(quality).into_iter();
+        table.row([
+            shortened(&short_name(&quality.path), NAME),
+            quality.n_rows.to_string(),
+            significant(1.0 / quality.period_s.max(1e-12), 3),
+            noise("pressure"),
+            noise("length"),
+            noise("force"),
+            odd.next().unwrap_or_default(),
+        ]);
+        for more in odd {
+            table.row(["", "", "", "", "", "", &more]);
         }
     }
-    format!("Recordings\n{}", table.to_terminal())
+    table
+}
+
+/// What a person should look at, in few words each.
+fn odd(quality: &RecordingQuality) -> Vec<String> {
+    let mut odd: Vec<String> = gaps(quality).into_iter().collect();
+    for channel in &quality.channels {
+        let name = match channel.name.as_str() {
+            "pressure" => "p",
+            "length" => "L",
+            "force" => "F",
+            other => other,
+        };
+        let share = channel.clipped_low_share + channel.clipped_high_share;
+        if share > STUCK {
+            odd.push(format!("{name} stuck {:.1} %", 100.0 * share));
+        }
+        if channel.highest <= channel.lowest {
+            odd.push(format!("{name} constant"));
+        }
+    }
+    odd
+}
+
+/// Share of samples at an end of a range that is worth a word.
+const STUCK: f64 = 0.001;
+
+fn gaps(quality: &RecordingQuality) -> Option<String> {
+    match quality.repairs.gaps {
+        0 => None,
+        1 => Some("1 gap".to_owned()),
+        gaps => Some(format!("{gaps} gaps")),
+    }
 }
 
 /// File name without its folders, which repeat on every row.
@@ -90,11 +148,15 @@ pub(crate) fn parameters(artifact: &ModelArtifact) -> String {
     for entry in &artifact.parameters {
         table.row([entry.name.clone(), value(entry), status(entry.status).to_owned()]);
     }
-    for entry in &artifact.composites {
-        let value = scaled(entry.value, entry.stderr, &entry.unit);
-        table.row([entry.name.clone(), value, "what the data tell".to_owned()]);
+    let mut text = format!("Parameters\n{}", table.to_terminal());
+    if !artifact.composites.is_empty() {
+        let mut table = Table::new(["identifiable combination", "value"]);
+        for entry in &artifact.composites {
+            table.row([entry.name.clone(), scaled(entry.value, entry.stderr, &entry.unit)]);
+        }
+        text.push_str(&format!("\n{}", table.to_terminal()));
     }
-    format!("Parameters\n{}", table.to_terminal())
+    text
 }
 
 fn value(entry: &ParameterEntry) -> String {
@@ -123,15 +185,15 @@ fn status(status: ParameterStatus) -> &'static str {
     match status {
         ParameterStatus::Fitted => "fitted",
         ParameterStatus::Fixed => "fixed",
-        ParameterStatus::Composite => "share of a composite",
+        ParameterStatus::Composite => "not separately identifiable",
         ParameterStatus::AtBound => "at its bound",
     }
 }
 
 /// How well the model agrees with every recording.
 pub(crate) fn agreement(artifact: &ModelArtifact) -> String {
-    let mut table = Table::new(["recording", "RMSE N", "all N", "max N", "R²", "fit %", "samples", "left out"]);
-    let mut row = |name: String, statistics: &pam_core::artifact::model::FitStatistics| {
+    let mut table = Table::new(["recording", "RMSE N", "all samples N", "max N", "R²", "fit %", "counted"]);
+    let mut row = |name: String, statistics: &FitStatistics| {
         table.row([
             name,
             significant(statistics.rmse_n, 4),
@@ -139,24 +201,30 @@ pub(crate) fn agreement(artifact: &ModelArtifact) -> String {
             significant(statistics.max_n, 3),
             format!("{:.5}", statistics.r2),
             format!("{:.2}", statistics.fit_percent),
-            statistics.n_samples.to_string(),
-            statistics.n_unsettled.to_string(),
+            counted(statistics),
         ]);
     };
     for recording in &artifact.fit.recordings {
-        row(short_name(&recording.path), &recording.statistics);
+        row(shortened(&short_name(&recording.path), NAME), &recording.statistics);
     }
     row("estimation, all".to_owned(), &artifact.fit.estimation);
     if let Some(validation) = &artifact.fit.validation {
         row("validation, all".to_owned(), validation);
     }
-    format!(
-        "Agreement (sensor noise alone would leave {} N; the samples are worth {} independent ones; samples \
-         around reversals, where noise hides the direction of friction, and beyond a sensor's range count in \"all\" only)\n{}",
+    let heading = format!(
+        "Agreement. Noise of the sensors alone would leave {} N; effective sample size {}. Samples around reversals, where noise \
+         hides the direction of friction, and beyond a sensor's range count in \"all samples\" only.",
         significant(artifact.fit.noise_floor_n, 3),
-        significant(artifact.fit.effective_samples, 3),
-        table.to_terminal()
-    )
+        significant(artifact.fit.effective_samples, 3)
+    );
+    format!("{}\n{}", wrapped(&heading, ""), table.to_terminal())
+}
+
+/// Share of samples that count.
+fn counted(statistics: &FitStatistics) -> String {
+    let all = statistics.n_samples + statistics.n_unsettled;
+    let percent = 100.0 * statistics.n_samples as f64 / all.max(1) as f64;
+    format!("{percent:.1} %")
 }
 
 /// What the columns reach without bounds.

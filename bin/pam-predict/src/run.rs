@@ -1,35 +1,47 @@
 //! Recording and model in, recording with two more columns out.
 
-use anyhow::{Context as _, ensure};
-use pam_cli::{Console, Output, Verdict};
-use pam_core::artifact::ModelArtifact;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, anyhow, ensure};
+use pam_cli::{Console, Output, OutputError, Verdict, publish};
+use pam_core::artifact::model::FitStatistics;
+use pam_core::artifact::{Input, InputRole, ModelArtifact, readable_json};
 use pam_core::effects::{AugmentedModel, Kind};
 use pam_core::recording::ReadOptions;
+use pam_identification::band::PredictiveBand;
 use pam_identification::evaluate::{NoForceAt, evaluate_augmented, noise_floor_n, trace_augmented, without_force};
 use pam_identification::faults::{reading, spikes};
 use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare, prepare_plausible};
+use pam_identification::prediction::{Prediction, predict};
 use pam_identification::prepare::Prepared;
+use pam_report::PictureFormat;
 
 use crate::args::Args;
+use crate::{figure, metrics};
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let console = args.run.start()?;
     let inputs = [&args.log, &args.model];
-    let out = match args.out.as_deref().filter(|_| !args.run.check) {
-        Some(path) => Some(Output::open(path)?.apart_from(inputs)?),
-        None => None,
+    let wanted = |path: &Option<PathBuf>, open: fn(&Path) -> Result<Output, OutputError>| {
+        path.as_deref().filter(|_| !args.run.check).map(|path| open(path)?.apart_from(inputs)).transpose()
     };
-    let (artifact, _) = ModelArtifact::read(&args.model)?;
+    let out = wanted(&args.out, |path| Output::open(path))?;
+    let metrics_out = wanted(&args.metrics, |path| Output::open(path))?;
+    let figure_out = wanted(&args.figure, |path| Output::open_figure(path))?;
+    let (artifact, model_sha256) = ModelArtifact::read(&args.model)?;
     let options = ReadOptions { force_required: false, ..args.read.options() };
     let recording = pam_cli::read_recording(&args.log, &options, &console)?;
     for note in recording.repairs.notes() {
         console.warn(format!("{}: {note}", recording.path));
     }
-    ensure!(
-        args.max_rmse_n.is_none() || recording.samples.has_force(),
-        "{}: no force was recorded, so --max-rmse-n has nothing to judge",
-        recording.path
-    );
+    for (limit, option) in [(args.max_rmse_n, "--max-rmse-n"), (args.max_rmse_all_n, "--max-rmse-all-n")] {
+        ensure!(
+            limit.is_none() || recording.samples.has_force(),
+            "{}: no force was recorded, so {option} has nothing to judge",
+            recording.path
+        );
+    }
+    let input = Input::recording(&recording, InputRole::Validation);
     let mut prepared =
         if args.accept_implausible { prepare(recording, &artifact)? } else { prepare_plausible(recording, &artifact)? };
     if let Some(words) = spikes::warning(&prepared.recording, &prepared.quality)? {
@@ -47,6 +59,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     } else {
         None
     };
+    // Before anything is written, as well: a band that cannot be drawn leaves no file.
+    let followed = match (&metrics_out, &figure_out) {
+        (None, None) => None,
+        _ => Some(followed(&prepared, &model, &artifact, &args.model)?),
+    };
+    let mut outputs = Vec::new();
     if let Some(mut out) = out {
         let path = out.path().display().to_string();
         // Only effects remember, and only with them the forces are computed beforehand.
@@ -64,25 +82,67 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
                 prepared.recording.path, missing.n, at.time_s
             ));
         }
-        out.finish()?;
-        if path != "-" {
-            console.note(format!("wrote {path}"));
+        outputs.push((out, Vec::new()));
+    }
+    let statistics = evaluation.map(|evaluation| evaluation.each[0]);
+    let above = above(args, statistics.as_ref());
+    if let Some(followed) = &followed {
+        if let Some(output) = metrics_out {
+            let read = Input { path: args.model.display().to_string(), sha256: model_sha256, role: InputRole::Model };
+            let floor_n =
+                has_force.then(|| noise_floor_n(std::slice::from_ref(&prepared), model.base())).transpose()?;
+            let metrics = metrics::metrics(args, vec![read, input], followed, (floor_n, above.is_empty()), &prepared);
+            outputs.push((output, readable_json(&metrics)?));
+        }
+        if let Some(output) = figure_out {
+            let format = PictureFormat::of_path(output.path());
+            outputs.push((output, format.write(figure::svg(followed, &prepared)?)?));
         }
     }
-    let Some(evaluation) = evaluation else { return Ok(Verdict::Accepted) };
-    let statistics = evaluation.each[0];
+    publish(outputs, &console)?;
+    let Some(statistics) = statistics else { return Ok(Verdict::Accepted) };
     console.note(format!(
-        "RMSE {:.3} N, largest {:.1} N, fit {:.2} % over {} samples ({} at reversals or beyond a sensor's range left out)",
-        statistics.rmse_n, statistics.max_n, statistics.fit_percent, statistics.n_samples, statistics.n_unsettled
+        "RMSE {:.3} N, largest {:.1} N, fit {:.2} % over {} counted samples; RMSE {:.3} N over all {}, reversals included",
+        statistics.rmse_n,
+        statistics.max_n,
+        statistics.fit_percent,
+        statistics.n_samples,
+        statistics.rmse_all_n,
+        statistics.n_samples + statistics.n_unsettled
     ));
     if let Some(words) = missed(&prepared, &artifact, &model, statistics.rmse_n)? {
         console.warn(words);
     }
-    if let Some(limit) = args.max_rmse_n.filter(|&limit| statistics.rmse_n > limit) {
-        console.warn(format!("rejected: RMSE {:.3} N is above --max-rmse-n {limit}", statistics.rmse_n));
-        return Ok(Verdict::Rejected);
-    }
-    Ok(Verdict::Accepted)
+    above.iter().for_each(|words| console.warn(words));
+    Ok(if above.is_empty() { Verdict::Accepted } else { Verdict::Rejected })
+}
+
+/// Limits that are not met, in words.
+fn above(args: &Args, statistics: Option<&FitStatistics>) -> Vec<String> {
+    let Some(statistics) = statistics else { return Vec::new() };
+    let limits = [
+        ("RMSE", statistics.rmse_n, "--max-rmse-n", args.max_rmse_n),
+        ("RMSE over all samples,", statistics.rmse_all_n, "--max-rmse-all-n", args.max_rmse_all_n),
+    ];
+    let words = limits.into_iter().filter_map(|(name, rmse_n, option, limit)| {
+        let limit = limit.filter(|&limit| rmse_n > limit)?;
+        Some(format!("rejected: {name} {rmse_n:.3} N is above {option} {limit}"))
+    });
+    words.collect()
+}
+
+/// Samples of the figure, at most.
+const FIGURE_SAMPLES: usize = 40_000;
+
+/// The recording along the model, with the interval around it.
+fn followed(
+    prepared: &Prepared,
+    model: &AugmentedModel,
+    artifact: &ModelArtifact,
+    path: &Path,
+) -> anyhow::Result<Prediction> {
+    let band = PredictiveBand::of(artifact).map_err(|error| anyhow!("{}: {error}", path.display()))?;
+    Ok(predict(prepared, model, artifact, &band, FIGURE_SAMPLES)?)
 }
 
 /// What to say of a recording that the model misses by `rmse_n`; nothing where it follows it as it followed its own.

@@ -255,7 +255,7 @@ fn every_bad_input_gets_one_line_with_the_remedy() {
         ),
         (
             "log.csv --model odd.json --out out.csv",
-            "odd.json:28:8: unknown field `shape`, expected one of `schema`, `tool`, `inputs`, `config`, `seed`, `geometry`, `strand_modulus_pa`, `form`, `parameters`, `composites`, `effects`, `correlation`, `fit`, `domain`, `direction`, `standstill_laws`, `quality`, `search`, `unbounded`, `warnings`; expected a pam-model/1 artifact",
+            "odd.json:28:8: unknown field `shape`, expected one of `schema`, `tool`, `inputs`, `config`, `seed`, `muscle_name`, `geometry`, `strand_modulus_pa`, `form`, `parameters`, `composites`, `effects`, `correlation`, `fit`, `domain`, `direction`, `standstill_laws`, `quality`, `search`, `unbounded`, `warnings`; expected a pam-model/1 artifact",
         ),
         ("none.csv --model model.json --out out.csv", "none.csv: no such file; check the path"),
         (
@@ -344,4 +344,73 @@ fn a_limit_is_a_number_above_zero() {
         let said = bench.refusal(&format!("log.csv --model model.json --out out.csv --max-rmse-n {limit}"));
         assert!(said.contains("expected a number above 0") && !said.contains("-- -1"), "{said}");
     }
+}
+
+/// The published schema.
+const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-prediction-1.json");
+
+#[test]
+fn metrics_obey_their_schema_and_tell_counted_from_all_samples() {
+    let bench = Bench::new();
+    let output = bench.run("log.csv --model model.json --metrics metrics.json --figure p.svg --max-rmse-all-n 1");
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("rejected: RMSE over all samples,") && said.contains("--max-rmse-all-n 1"), "{said}");
+    let metrics: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(bench.folder.path().join("metrics.json")).unwrap()).unwrap();
+    let printed = bench.run("--schema").stdout;
+    assert!(printed == SCHEMA.as_bytes(), "the published schema is stale; run scripts/schemas");
+    jsonschema::validate(&serde_json::from_str(SCHEMA).unwrap(), &metrics).unwrap();
+    let number = |of: &str, name: &str| metrics[of][name].as_f64().unwrap();
+    assert!(number("counted", "n_samples") < number("all", "n_samples"));
+    assert_eq!(metrics["all"]["n_samples"], metrics["n_rows"]);
+    assert_eq!(metrics["accepted"], false);
+    // By hand from the rows that are written.
+    let rows = String::from_utf8(bench.run("log.csv --model model.json --out - --quiet").stdout).unwrap();
+    let residuals = column(&rows, "residual_N");
+    let rmse_n = (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt();
+    assert!((number("all", "rmse_n") - rmse_n).abs() < 1e-4 * rmse_n, "{} {rmse_n}", number("all", "rmse_n"));
+    let band_n = number("band", "half_width_n");
+    let inside = residuals.iter().filter(|r| r.abs() <= band_n).count() as f64 / residuals.len() as f64;
+    // This model has no uncertainty of its parameters, so that the band is as wide everywhere.
+    assert!((number("all", "inside_band") - inside).abs() < 1e-3, "{inside}");
+    let svg = std::fs::read_to_string(bench.folder.path().join("p.svg")).unwrap();
+    assert!(svg.contains("log.csv: measured and modelled") && svg.len() < 200_000);
+}
+
+#[test]
+fn where_the_model_extrapolates_is_a_share_of_the_samples() {
+    let bench = Bench::new();
+    let narrow: serde_json::Value = serde_json::from_str(MODEL).unwrap();
+    let mut narrow = narrow;
+    narrow["domain"]["pressure_pa"] = serde_json::json!([0.0, 1e9]);
+    narrow["domain"]["length_m"] = serde_json::json!([0.0, 1.0]);
+    bench.file("wide.json", &narrow.to_string());
+    let share = |model: &str| {
+        bench.run(&format!("log.csv --model {model} --metrics metrics.json --quiet"));
+        let text = std::fs::read(bench.folder.path().join("metrics.json")).unwrap();
+        let metrics: serde_json::Value = serde_json::from_slice(&text).unwrap();
+        metrics["extrapolation"]["share"].as_f64().unwrap()
+    };
+    assert_eq!(share("wide.json"), 0.0);
+    assert!(share("model.json") > 0.0);
+}
+
+#[test]
+fn a_figure_is_what_its_ending_says() {
+    let bench = Bench::new();
+    let begins = |name: &str, bytes: &[u8]| {
+        let output = bench.run(&format!("log.csv --model model.json --figure {name}"));
+        let said = String::from_utf8(output.stderr).unwrap();
+        if said.contains("none is installed") {
+            return println!("skipped: no font is installed");
+        }
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        assert!(std::fs::read(bench.folder.path().join(name)).unwrap().starts_with(bytes), "{name}");
+    };
+    begins("a.png", b"\x89PNG");
+    begins("a.pdf", b"%PDF-");
+    begins("a.svg", b"<svg");
+    let said = bench.refusal("log.csv --model model.json --figure a.bmp");
+    assert!(said.contains("figures are SVG, PNG or PDF; name it a.png"), "{said}");
 }

@@ -31,7 +31,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "INVERSE.json", required_unless_present = "check")]
     pub(crate) out: Option<PathBuf>,
 
-    /// Figure to write (SVG): map, errors, training.
+    /// Figure to write (SVG, PNG or PDF, by its ending): map, errors, training.
     #[arg(long, value_name = "INVERSE.svg")]
     pub(crate) figure: Option<PathBuf>,
 

@@ -8,6 +8,7 @@ use pam_cli::{Console, Output, Verdict, pretty_json, publish, read_recordings};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool};
 use pam_core::recording::ReadOptions;
 use pam_inverse_model::report::{Outcome, Prepared};
+use pam_report::PictureFormat;
 
 use crate::args::{ActivationArg, Args};
 use crate::{figure, tables};
@@ -20,7 +21,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let inputs = || args.logs.iter().chain([&args.model]);
     let open = |path: &Path| Output::open(path)?.apart_from(inputs());
     let out = args.out.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
-    let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
+    let open_figure = |path: &Path| Output::open_figure(path)?.apart_from(inputs());
+    let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open_figure).transpose()?;
 
     let (model, sha256) = ModelArtifact::read(&args.model)?;
     let beside = model.augmented_model().beside_the_muscle();
@@ -156,7 +158,8 @@ fn write(
         outputs.push((output, pretty_json(artifact)?));
     }
     if let Some(output) = figure_out {
-        outputs.push((output, figure::svg(artifact, outcome, prepared)?.into_bytes()));
+        let format = PictureFormat::of_path(output.path());
+        outputs.push((output, format.write(figure::svg(artifact, outcome, prepared)?)?));
     }
     Ok(publish(outputs, console)?)
 }

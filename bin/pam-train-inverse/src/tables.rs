@@ -6,6 +6,7 @@ use pam_core::artifact::InverseArtifact;
 use pam_core::artifact::inverse::{Ended, ErrorStatistics, RegionErrors};
 use pam_report::Table;
 use pam_report::number::significant;
+use pam_report::text::wrapped;
 
 use crate::run::Timing;
 
@@ -23,14 +24,14 @@ pub(crate) fn training(artifact: &InverseArtifact, time: Duration) -> String {
         ]);
     }
     let layers: Vec<String> = artifact.layers.iter().map(ToString::to_string).collect();
-    format!(
-        "Training of a {} network on {} points, {} more to decide when to stop, in {} s\n{}",
+    let heading = format!(
+        "Training of a {} network on {} points, {} more to decide when to stop, in {} s",
         layers.join("-"),
         report.n_training,
         report.n_validation,
-        significant(time.as_secs_f64(), 3),
-        table.to_terminal()
-    )
+        significant(time.as_secs_f64(), 3)
+    );
+    format!("{}\n{}", wrapped(&heading, ""), table.to_terminal())
 }
 
 fn ended(ended: Ended) -> &'static str {
@@ -47,14 +48,13 @@ fn ended(ended: Ended) -> &'static str {
 pub(crate) fn errors(artifact: &InverseArtifact) -> String {
     let errors = &artifact.errors;
     let domain = &artifact.domain;
-    let mut table = Table::new(["unseen points", "RMSE", "RMSE % of range", "median", "95 %", "largest"]);
+    let mut table = Table::new(["unseen points", "RMSE", "% of range", "95 %", "largest"]);
     let mut row = |name: &str, statistics: &ErrorStatistics, scale: f64, unit: &str, range: [f64; 2]| {
         let number = |value: f64| format!("{} {unit}", significant(value * scale, 3));
         table.row([
             name.to_owned(),
             number(statistics.rmse),
             significant(100.0 * statistics.rmse / (range[1] - range[0]), 2),
-            number(statistics.median),
             number(statistics.p95),
             number(statistics.max),
         ]);
@@ -94,11 +94,11 @@ pub(crate) fn regions(artifact: &InverseArtifact) -> String {
         .map(|(percent, why)| format!("in {percent:.1} % {why}"))
         .collect();
     let missing = if missing.is_empty() { String::new() } else { format!("; {}", missing.join(", ")) };
-    format!(
-        "Where the errors are. The inverse exists in {:.1} % of the box of pressures and lengths{missing}\n{}",
-        shares.invertible_percent,
-        table.to_terminal()
-    )
+    let heading = format!(
+        "Where the errors are. The inverse exists in {:.1} % of the operating range of pressures and lengths{missing}",
+        shares.invertible_percent
+    );
+    format!("{}\n{}", wrapped(&heading, ""), table.to_terminal())
 }
 
 /// What a region is called.
@@ -114,7 +114,7 @@ pub(crate) fn region_name(region: &RegionErrors) -> String {
     }
 }
 
-/// The network beside the root of the model.
+/// The network beside the numerical inverse.
 pub(crate) fn inverses(artifact: &InverseArtifact, timing: &Timing) -> String {
     let mut table = Table::new(["inverse", "time", "RMSE kPa", "largest kPa"]);
     let time = |duration: Duration| format!("{} ns", duration.as_nanos());
@@ -125,6 +125,6 @@ pub(crate) fn inverses(artifact: &InverseArtifact, timing: &Timing) -> String {
         significant(artifact.errors.pressure_pa.max * 1e-3, 3),
     ]);
     let exact = significant(timing.exact_max_pa * 1e-3, 1);
-    table.row(["root of the model".to_owned(), time(timing.exact), "–".to_owned(), exact]);
+    table.row(["numerical inverse".to_owned(), time(timing.exact), "–".to_owned(), exact]);
     format!("Network and exact inverse\n{}", table.to_terminal())
 }

@@ -37,6 +37,7 @@ mod program;
 mod read_args;
 mod reading;
 mod run_args;
+mod style;
 mod target;
 mod temporary;
 

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::exit::{flatten, visible};
+use crate::style;
 
 /// How standard error is written.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -94,10 +95,12 @@ impl Message {
     pub(crate) fn write(&self, format: Format) {
         let mut text = match (format, self) {
             (Format::Json, message) => serde_json::to_string(message).unwrap_or_default(),
-            (Format::Text, Self::Note(said)) => format!("note: {}", said.message),
-            (Format::Text, Self::Warning(said)) => format!("warning: {}", said.message),
-            (Format::Text, Self::Error(said)) => format!("error: {}", said.message),
-            (Format::Text, Self::Table(drawn)) => drawn.message.clone(),
+            (Format::Text, Self::Note(said)) => format!("{} {}", style::level("note:", style::DIM), said.message),
+            (Format::Text, Self::Warning(said)) => {
+                format!("{} {}", style::level("warning:", style::YELLOW), said.message)
+            }
+            (Format::Text, Self::Error(said)) => format!("{} {}", style::level("error:", style::RED), said.message),
+            (Format::Text, Self::Table(drawn)) => style::table(&drawn.message),
             (Format::Text, Self::Progress(_)) => return,
         };
         text.push('\n');

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::interrupt::live;
-use crate::target::{Claim, folder_of, follow_links, is_another_picture, is_descriptor, is_stdout};
+use crate::target::{Claim, OTHER_PICTURES, ends_as_picture, folder_of, follow_links, is_descriptor, is_stdout};
 use crate::temporary::Temporary;
 use crate::{Console, OutputError};
 
@@ -57,12 +57,24 @@ impl Output {
     /// # Errors
     /// [`OutputError`] names the path and the way out.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, OutputError> {
+        let path = path.as_ref();
+        if ends_as_picture(path, &["png", "pdf"]) {
+            return Err(OutputError::IsPicture { path: path.to_owned() });
+        }
+        Self::open_figure(path)
+    }
+
+    /// As [`open`](Self::open), for a figure, which may be SVG, PNG or PDF.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_figure(path: impl AsRef<Path>) -> Result<Self, OutputError> {
         let path = path.as_ref().to_owned();
         if is_stdout(&path) {
             let claim = Claim::new(PathBuf::from("-"), &path)?;
             return Ok(Self { path, sink: Sink::Stdout, claim: Some(claim) });
         }
-        if is_another_picture(&path) {
+        if ends_as_picture(&path, &OTHER_PICTURES) {
             return Err(OutputError::AnotherPicture { path });
         }
         let fail = |reason| OutputError::from_io(&path, reason);

@@ -72,11 +72,20 @@ pub enum OutputError {
     },
     /// The name is that of a picture in a format that is not written.
     #[error(
-        "cannot write {}: figures are SVG; name it {}, and convert it then, for example with rsvg-convert or Inkscape",
+        "cannot write {}: figures are SVG, PNG or PDF; name it {}",
         shown(path),
-        path.with_extension("svg").display()
+        path.with_extension("png").display()
     )]
     AnotherPicture {
+        /// Path as given.
+        path: PathBuf,
+    },
+    /// The name is that of a picture, and the output is none.
+    #[error(
+        "cannot write {}: it is the name of a picture, and this output is none; give it another ending",
+        shown(path)
+    )]
+    IsPicture {
         /// Path as given.
         path: PathBuf,
     },

@@ -48,9 +48,11 @@ pub(crate) fn is_descriptor(path: &Path) -> bool {
 }
 
 /// Endings of pictures that no program here writes.
-pub(crate) fn is_another_picture(path: &Path) -> bool {
-    let known = ["png", "pdf", "jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "eps", "ps", "emf"];
-    path.extension().is_some_and(|ending| known.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+pub(crate) const OTHER_PICTURES: [&str; 10] = ["jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "eps", "ps", "emf"];
+
+/// Whether `path` ends in one of `endings`.
+pub(crate) fn ends_as_picture(path: &Path, endings: &[&str]) -> bool {
+    path.extension().is_some_and(|ending| endings.iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
 /// Folder of `target`, `.` where it has none.

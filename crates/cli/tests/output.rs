@@ -137,8 +137,11 @@ fn two_outputs_to_one_file_and_an_output_over_an_input_are_refused() {
 #[test]
 fn a_picture_in_a_format_that_is_not_written_is_refused_with_the_way_out() {
     let folder = tempfile::tempdir().unwrap();
-    let refused = Output::open(folder.path().join("fit.PNG")).unwrap_err();
+    let refused = Output::open_figure(folder.path().join("fit.JPG")).unwrap_err();
     assert!(matches!(refused, OutputError::AnotherPicture { .. }), "{refused}");
-    assert!(refused.to_string().contains("figures are SVG; name it ") && refused.to_string().contains("fit.svg,"));
+    assert!(refused.to_string().contains("figures are SVG, PNG or PDF; name it "), "{refused}");
+    let refused = Output::open(folder.path().join("model.PNG")).unwrap_err();
+    assert!(matches!(refused, OutputError::IsPicture { .. }), "{refused}");
+    assert!(Output::open_figure(folder.path().join("fit.PNG")).is_ok());
     assert!(names(folder.path()).is_empty());
 }

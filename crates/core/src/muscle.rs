@@ -214,6 +214,8 @@ impl Dimension {
 /// A muscle file: what was measured, and which of it a fit may adjust.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MuscleFile {
+    /// Name for reports and figures, where the file gives one.
+    pub name: Option<String>,
     /// Dimensions as measured.
     pub muscle: Muscle,
     /// Dimensions that are to be fitted, in the order of [`Dimension::ALL`].
@@ -226,6 +228,8 @@ pub struct MuscleFile {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MuscleToml {
+    #[serde(default)]
+    name: Option<String>,
     rest_length_mm: f64,
     rest_radius_mm: f64,
     braid_angle_deg: f64,
@@ -357,7 +361,8 @@ impl MuscleFile {
         fit.sort_unstable();
         fit.dedup();
         let strand_modulus_pa = within("strand_modulus_gpa", written.strand_modulus_gpa, 0.01, 500.0)? * 1e9;
-        Ok(Self { muscle, fit, strand_modulus_pa })
+        let name = written.name.map(|name| name.trim().to_owned()).filter(|name| !name.is_empty());
+        Ok(Self { name, muscle, fit, strand_modulus_pa })
     }
 }
 

@@ -7,6 +7,7 @@ use std::time::Instant;
 use pam_core::artifact::ModelArtifact;
 use pam_core::artifact::diagnosis::DiagnoseConfig;
 use pam_core::recording::{ReadOptions, read_recording};
+use pam_diagnosis::artifact::Agreement;
 use pam_diagnosis::diagnose::{MAX_EFFECTS, Request, diagnose};
 
 fn main() {
@@ -15,9 +16,12 @@ fn main() {
     let estimation = arguments.map(|path| read_recording(Path::new(&path), &ReadOptions::default()).unwrap()).collect();
     let config = DiagnoseConfig { matters_above_n: None, max_effects: MAX_EFFECTS, excluded: Vec::new() };
     let begin = Instant::now();
-    let found =
+    let mut found =
         diagnose(Request { estimation, holdout: Vec::new(), model, config, accept_implausible: false }).unwrap();
-    println!("{:.2} s: {}", begin.elapsed().as_secs_f64(), found.statement);
+    let seconds = begin.elapsed().as_secs_f64();
+    let agreement = Agreement::of(&found).unwrap();
+    found.weigh(&agreement).unwrap();
+    println!("{seconds:.2} s: {}", found.statement);
     let isolability = &found.isolability;
     for (index, id) in isolability.ids.iter().enumerate() {
         let like: Vec<String> = (0..isolability.ids.len())

@@ -13,7 +13,9 @@ use pam_identification::prepare::Prepared;
 use pam_identification::search_space::Free;
 
 use crate::diagnose::Diagnosis;
+use crate::discover;
 use crate::error::DiagnoseError;
+use crate::nuisance::MAP_ID;
 use crate::{held, words};
 
 /// How an artifact begins.
@@ -101,19 +103,24 @@ fn effective_samples(diagnosis: &Diagnosis) -> Result<f64, DiagnoseError> {
 }
 
 impl Diagnosis {
-    /// Lowers what is called explained to explained in part where, over all samples, more is left than half as much again as
-    /// the sensors leave, and says so. The model as given and what was held out decide, too: where either is missed, nothing is
-    /// consistent or explained, and that is said first.
+    /// Says the verdict in words and numbers, and lowers what is called explained to explained in part where, over all samples,
+    /// more is left than half as much again as the sensors leave, and says so. The model as given and what was held out decide,
+    /// too: where either is missed, nothing is consistent or explained, and that is said first.
     ///
     /// # Errors
     /// [`DiagnoseError::Recording`] where samples cannot be read back.
     pub fn weigh(&mut self, agreement: &Agreement) -> Result<(), DiagnoseError> {
+        let numbers = self.numbers(agreement);
+        self.unexplained_share = numbers.share_left();
+        self.statement = words::statement(self.verdict, &self.effects, &numbers, &self.regions, &self.unexplained)
+            + &self.empirical.as_ref().map_or(String::new(), discover::statement);
         let left_n = together(&agreement.estimation).rmse_all_n;
         let sensors_n = self.sizes.sensors_n;
         if self.verdict == Verdict::Explained && left_n > EXPLAINED_WITHIN * sensors_n {
             self.verdict = Verdict::ExplainedInPart;
             self.statement.push_str(&format!(
-                " Over all samples {left_n:.2} N are left, where the sensors alone leave {sensors_n:.2} N."
+                " Over all samples, reversals included, {left_n:.2} N are left, where noise leaves {:.2} N.",
+                numbers.floor_n
             ));
         }
         self.given.holdout_missed = held::missed(self, agreement)?;
@@ -125,6 +132,17 @@ impl Diagnosis {
         }
         self.statement = words::with_given(&self.given, &self.statement);
         Ok(())
+    }
+
+    /// What the verdict says in numbers.
+    fn numbers(&self, agreement: &Agreement) -> words::Numbers {
+        words::Numbers {
+            before_n: together(&agreement.base_estimation).rmse_n,
+            after_n: together(&agreement.estimation).rmse_n,
+            floor_n: agreement.noise_floor_n,
+            matters_n: self.sizes.matters_n,
+            with_map: self.entries.iter().any(|entry| entry.id == MAP_ID),
+        }
     }
 
     /// The diagnosis for other programs and for people.
@@ -182,6 +200,7 @@ impl Diagnosis {
             inputs: head.inputs,
             config: self.model.config.clone(),
             seed: head.seed,
+            muscle_name: self.model.muscle_name.clone(),
             geometry: self.model.geometry.clone(),
             strand_modulus_pa: self.model.strand_modulus_pa,
             form: self.model.form,

@@ -34,7 +34,6 @@ use crate::track::Track;
 use crate::uncertainty::{Uncertainty, correlated_instants, entries, shape_errors};
 use crate::verdict::{Sizes, alternatives, verdict};
 use crate::veto;
-use crate::words;
 
 /// What to diagnose.
 #[derive(Debug)]
@@ -60,7 +59,7 @@ pub struct Diagnosis {
     pub config: DiagnoseConfig,
     /// What is to be believed.
     pub verdict: Verdict,
-    /// The verdict in words.
+    /// The verdict in words; empty until [`weigh`](Diagnosis::weigh) has been called.
     pub statement: String,
     /// The model as it was given.
     pub given: Given,
@@ -257,8 +256,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     }
     let diagnosis = Diagnosis {
         verdict,
-        statement: words::statement(verdict, &effects, &sizes, &regions, &unexplained)
-            + &empirical.as_ref().map_or(String::new(), discover::statement),
+        // Said once the models are compared at the rate of the recordings.
+        statement: String::new(),
         given,
         regions,
         effects,
@@ -404,7 +403,7 @@ fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
             let outcome = if taken.contains(&id) || (knocks && id == knocks::ID) {
                 "named".to_owned()
             } else if rivals.contains(&id) {
-                "cannot be told from what was named".to_owned()
+                "cannot be distinguished from one named".to_owned()
             } else if found.stand_ins.contains(&id) {
                 "gains something, and leaves far more than it explains".to_owned()
             } else if explains < 0.02 {
@@ -412,7 +411,7 @@ fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
             } else if taken.is_empty() {
                 "gains too little to be named".to_owned()
             } else {
-                "explains less than what was named, and nothing beside it".to_owned()
+                "redundant given the selected effects".to_owned()
             };
             Candidate {
                 id: id.to_owned(),

@@ -4,28 +4,62 @@ use pam_core::artifact::diagnosis::{Coordinate, NamedEffect, Region, Verdict};
 
 use crate::artifact::together;
 use crate::given::Given;
-use crate::verdict::Sizes;
+
+/// What the verdict says in numbers: RMSE over the counted samples of the estimation recordings at their own rate, in N. Tables and
+/// report show the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Numbers {
+    /// Base model, refitted: the mismatch.
+    pub(crate) before_n: f64,
+    /// Base model and effects.
+    pub(crate) after_n: f64,
+    /// What noise leaves of a perfect model.
+    pub(crate) floor_n: f64,
+    /// Excess over the noise floor that would matter.
+    pub(crate) matters_n: f64,
+    /// Whether a smooth static map stands beside the effects.
+    pub(crate) with_map: bool,
+}
+
+impl Numbers {
+    /// Share of the excess over the noise floor (mean squares) that is left; none where there is no excess.
+    pub(crate) fn share_left(&self) -> f64 {
+        let excess = |rmse_n: f64| rmse_n * rmse_n - self.floor_n * self.floor_n;
+        let before = excess(self.before_n);
+        if before > 0.0 { (excess(self.after_n) / before).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    fn gain(&self) -> String {
+        let map = if self.with_map { " and a smooth static map" } else { "" };
+        format!(
+            "with that{map} the RMSE falls from {:.2} to {:.2} N, {:.0} % of the excess over the noise floor of {:.2} N",
+            self.before_n,
+            self.after_n,
+            100.0 * (1.0 - self.share_left()),
+            self.floor_n
+        )
+    }
+}
 
 /// The verdict in one sentence.
 pub(crate) fn statement(
     verdict: Verdict,
     effects: &[NamedEffect],
-    sizes: &Sizes,
+    numbers: &Numbers,
     regions: &[Region],
     unexplained: &[Region],
 ) -> String {
     let names: Vec<&str> = effects.iter().map(|effect| effect.name.as_str()).collect();
     match verdict {
         Verdict::Consistent => format!(
-            "Nothing is missing that matters: beyond what noise leaves ({:.2} N) the model is off by {:.2} N, and {:.2} N would \
-             matter.",
-            sizes.floor_n, sizes.mismatch_n, sizes.matters_n
+            "Nothing is missing that matters: refitted, the model leaves an RMSE of {:.2} N, where noise leaves {:.2} N, and \
+             {:.2} N beyond that would matter.",
+            numbers.before_n, numbers.floor_n, numbers.matters_n
         ),
         Verdict::Explained | Verdict::ExplainedInPart => format!(
-            "The model lacks {}: that explains {:.0} % of a mismatch of {:.2} N, which lies {}.",
+            "Missing physics: {}; {}. The mismatch lies {}.",
             list(&names),
-            100.0 * (1.0 - sizes.share_left()),
-            sizes.mismatch_n,
+            numbers.gain(),
             regions.first().map_or_else(|| "nowhere in particular".to_owned(), place)
         ),
         Verdict::Ambiguous => {
@@ -35,23 +69,22 @@ pub(crate) fn statement(
                 .map(|effect| format!("{} or {}", effect.id, effect.alternatives.join(" or ")))
                 .collect();
             format!(
-                "The model lacks {}, but these recordings cannot tell {}; a mismatch of {:.2} N is explained either way.",
+                "Missing physics: {}, but these recordings cannot distinguish {}; {}.",
                 list(&names),
                 others.join(", nor "),
-                sizes.mismatch_n
+                numbers.gain()
             )
         }
         Verdict::Unexplained => {
             let place = unexplained.first().map_or_else(|| "nowhere in particular".to_owned(), place);
             if names.is_empty() {
-                format!("Something is missing that has no name here: a mismatch of {:.2} N, {place}.", sizes.mismatch_n)
-            } else {
                 format!(
-                    "The model lacks {}, and something more that has no name here: {:.2} N of {:.2} N are left, {place}.",
-                    list(&names),
-                    sizes.left_n,
-                    sizes.mismatch_n
+                    "Unmodelled structure: refitted, the model leaves an RMSE of {:.2} N, where noise leaves {:.2} N, and no effect of \
+                     the catalogue explains it; it lies {place}.",
+                    numbers.before_n, numbers.floor_n
                 )
+            } else {
+                format!("Missing physics: {}; {}. Unmodelled structure is left {place}.", list(&names), numbers.gain())
             }
         }
     }

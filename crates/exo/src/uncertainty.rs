@@ -8,9 +8,9 @@
 //! at its bound, has no distribution to draw from and is held at its value.
 
 use nalgebra::{DMatrix, DVector};
-use pam_core::artifact::ModelArtifact;
-use pam_core::force::{ForceModel, Parameter};
-use pam_core::muscle::Dimension;
+use pam_core::artifact::estimates::EstimatesError;
+use pam_core::artifact::{Estimates, ModelArtifact};
+use pam_core::force::ForceModel;
 use rand::RngExt as _;
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
@@ -18,52 +18,17 @@ use rand_pcg::Pcg64;
 /// Distribution of a model's parameters.
 #[derive(Debug, Clone)]
 pub struct Uncertainty {
-    /// What each row of `factor` moves.
-    targets: Vec<Target>,
-    /// `S C`: one row for each target.
+    estimates: Estimates,
+    /// `S C`: one row for each estimate.
     factor: DMatrix<f64>,
-    /// Names of what has no standard error.
-    held: Vec<String>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Target {
-    /// A parameter of eq. 11, by the value in the artifact.
-    Parameter(Parameter),
-    /// `C₁₀ + C₀₁`.
-    Bladder,
-    /// A dimension of the muscle.
-    Dimension(Dimension),
 }
 
 /// Why a model's uncertainty cannot be drawn from.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum UncertaintyError {
-    /// The matrix is not square, or does not belong to the names.
-    #[error("correlation has {names} names and a matrix of {rows} rows; write the model anew with pam-identify")]
-    Shape {
-        /// Names.
-        names: usize,
-        /// Rows.
-        rows: usize,
-    },
-    /// A name that stands for no parameter.
-    #[error(
-        "correlation names \"{name}\", which is no parameter of the model; set trials.model_parameters = false, or write \
-         the model anew with pam-identify"
-    )]
-    Unknown {
-        /// Name found.
-        name: String,
-    },
-    /// A standard error that is none.
-    #[error("the standard error of {name} is {stderr}; write the model anew with pam-identify")]
-    Negative {
-        /// Name of the parameter.
-        name: String,
-        /// What it says.
-        stderr: String,
-    },
+    /// The artifact says nothing of it.
+    #[error(transparent)]
+    Estimates(#[from] EstimatesError),
     /// The matrix is no correlation matrix.
     #[error("correlation is not positive definite; set trials.model_parameters = false, or identify the model anew")]
     Indefinite,
@@ -75,101 +40,34 @@ impl Uncertainty {
     /// # Errors
     /// [`UncertaintyError`] says what is missing there.
     pub fn new(artifact: &ModelArtifact) -> Result<Self, UncertaintyError> {
-        let (names, matrix) = (&artifact.correlation.names, &artifact.correlation.matrix);
-        if matrix.len() != names.len() || matrix.iter().any(|row| row.len() != names.len()) {
-            return Err(UncertaintyError::Shape { names: names.len(), rows: matrix.len() });
-        }
-        let (mut rows, mut targets, mut errors, mut held) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for (row, name) in names.iter().enumerate() {
-            let of_parameter = artifact.parameters.iter().find(|entry| entry.name == *name).map(|entry| entry.stderr);
-            let of_composite = artifact.composites.iter().find(|entry| entry.name == *name).map(|entry| entry.stderr);
-            let known = target(name).zip(of_parameter.or(of_composite));
-            let Some((target, stderr)) = known else { return Err(UncertaintyError::Unknown { name: name.clone() }) };
-            match stderr {
-                Some(stderr) if stderr >= 0.0 => {
-                    rows.push(row);
-                    targets.push(target);
-                    errors.push(stderr);
-                }
-                Some(stderr) => {
-                    return Err(UncertaintyError::Negative { name: name.clone(), stderr: stderr.to_string() });
-                }
-                None => held.push(name.clone()),
-            }
-        }
-        let n = rows.len();
+        let estimates = Estimates::of(artifact)?;
+        let n = estimates.len();
         // A perfect correlation is singular by rounding; a billionth on the diagonal moves nothing.
         let correlation = DMatrix::from_fn(n, n, |row, column| {
-            let both = matrix[rows[row]][rows[column]] + matrix[rows[column]][rows[row]];
-            0.5 * both + if row == column { 1e-9 } else { 0.0 }
+            estimates.correlation()[row][column] + if row == column { 1e-9 } else { 0.0 }
         });
         let cholesky = correlation.cholesky().ok_or(UncertaintyError::Indefinite)?;
-        Ok(Self { targets, factor: DMatrix::from_diagonal(&DVector::from_vec(errors)) * cholesky.l(), held })
+        let factor = DMatrix::from_diagonal(&DVector::from_row_slice(estimates.stderr())) * cholesky.l();
+        Ok(Self { estimates, factor })
     }
 
     /// Names of the parameters that are held at their values, for want of a standard error.
     pub fn held(&self) -> &[String] {
-        &self.held
+        self.estimates.held()
     }
 
     /// A model with parameters drawn around those of `model`.
     pub fn draw(&self, model: &ForceModel, rng: &mut Pcg64) -> ForceModel {
-        let normal = DVector::from_fn(self.targets.len(), |_, _| rng.sample::<f64, _>(StandardNormal));
-        let shifts = &self.factor * normal;
-        let mut parameters = *model.parameters();
-        let mut muscle = model.muscle().clone();
-        for (target, shift) in self.targets.iter().zip(shifts.iter()) {
-            match *target {
-                Target::Parameter(parameter) => {
-                    let value = &mut parameters.theta[parameter.index()];
-                    *value = within_physics(parameter, *value, *shift);
-                }
-                Target::Bladder => {
-                    let (c10, c01) = (Parameter::C10.index(), Parameter::C01.index());
-                    let sum_pa = parameters.theta[c10] + parameters.theta[c01];
-                    let scale = if sum_pa > 0.0 { (1.0 + shift / sum_pa).max(0.0) } else { 1.0 };
-                    parameters.theta[c10] *= scale;
-                    parameters.theta[c01] *= scale;
-                }
-                Target::Dimension(dimension) => {
-                    let value = dimension.of(&muscle);
-                    muscle = dimension.set(&muscle, (value + shift).max(LEAST_SHARE * value));
-                }
-            }
-        }
-        ForceModel::new(&muscle, model.strand_modulus_pa(), model.form(), parameters)
+        let normal = DVector::from_fn(self.estimates.len(), |_, _| rng.sample::<f64, _>(StandardNormal));
+        self.estimates.shifted(model, (&self.factor * normal).as_slice())
     }
-}
-
-/// Smallest share of a modulus or a dimension that a draw leaves: a tail of the normal distribution that reaches beyond is
-/// no muscle.
-const LEAST_SHARE: f64 = 0.01;
-
-/// The parameter `value` after a `shift` of what the artifact writes; friction that drives and strands that lengthen when
-/// they are let go are no muscle's.
-fn within_physics(parameter: Parameter, value: f64, shift: f64) -> f64 {
-    let written = parameter.from_artifact(value);
-    let least = match parameter {
-        Parameter::StrandCompliance => LEAST_SHARE * written,
-        Parameter::RubberFriction | Parameter::StrandFriction => written.min(0.0),
-        _ => f64::NEG_INFINITY,
-    };
-    parameter.from_artifact((written + shift).max(least))
-}
-
-fn target(name: &str) -> Option<Target> {
-    if name == "c10 + c01" {
-        return Some(Target::Bladder);
-    }
-    let parameter = Parameter::ALL.into_iter().find(|parameter| parameter.artifact_name() == name);
-    let dimension = Dimension::ALL.into_iter().find(|dimension| dimension.parameter_name() == name);
-    parameter.map(Target::Parameter).or(dimension.map(Target::Dimension))
 }
 
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
+    use pam_core::force::Parameter;
     use rand_pcg::Pcg64;
 
     use super::*;
@@ -218,6 +116,6 @@ mod tests {
     fn a_name_that_is_no_parameter_is_refused() {
         let mut odd = artifact();
         odd.correlation.names[0] = "k9".to_owned();
-        assert_eq!(Uncertainty::new(&odd).err(), Some(UncertaintyError::Unknown { name: "k9".to_owned() }));
+        assert_eq!(Uncertainty::new(&odd).err(), Some(EstimatesError::Unknown { name: "k9".to_owned() }.into()));
     }
 }

@@ -39,8 +39,12 @@ fn setting(rows: usize) -> Setting {
         repairs: Repairs::default(),
         ignored_columns: Vec::new(),
     };
-    let file =
-        MuscleFile { muscle: muscle.muscle().clone(), fit: Vec::new(), strand_modulus_pa: muscle.contact_modulus_pa() };
+    let file = MuscleFile {
+        name: None,
+        muscle: muscle.muscle().clone(),
+        fit: Vec::new(),
+        strand_modulus_pa: muscle.contact_modulus_pa(),
+    };
     let gates = gate(vec![recording]).expect("samples in memory");
     let largest = gates[0].quality.largest_pressure_length_n_per_m;
     let thresholds = thresholds(&gates, &file.muscle);

@@ -27,12 +27,13 @@ pub struct NoForceAt {
 
 /// Sums over samples whose direction is settled.
 #[derive(Debug, Clone, Copy, Default)]
-struct Tally {
+pub(crate) struct Tally {
     n_samples: usize,
     n_unsettled: usize,
     /// Samples that would count, had the model a force for them, and the first of them.
     n_without_force: usize,
     first_without_force: Option<NoForceAt>,
+    residuals: f64,
     residual_squares: f64,
     unsettled_squares: f64,
     largest: f64,
@@ -42,7 +43,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn push(&mut self, force_n: f64, model_n: f64, at: impl FnOnce() -> NoForceAt) {
+    pub(crate) fn push(&mut self, force_n: f64, model_n: f64, at: impl FnOnce() -> NoForceAt) {
         let residual_n = force_n - model_n;
         // Its square is what is summed.
         if !(residual_n * residual_n).is_finite() {
@@ -54,6 +55,7 @@ impl Tally {
             self.first_force_n = force_n;
         }
         self.n_samples += 1;
+        self.residuals += residual_n;
         self.residual_squares += residual_n * residual_n;
         self.largest = self.largest.max(residual_n.abs());
         // Relative to the first force, so that a large mean costs no digits.
@@ -86,6 +88,7 @@ impl Tally {
         self.force_squares += other.force_squares + 2.0 * shift_n * other.forces + n * shift_n * shift_n;
         self.forces += other.forces + n * shift_n;
         self.n_samples += other.n_samples;
+        self.residuals += other.residuals;
         self.residual_squares += other.residual_squares;
         self.largest = self.largest.max(other.largest);
     }
@@ -103,7 +106,12 @@ impl Tally {
         Ok(())
     }
 
-    fn statistics(&self) -> FitStatistics {
+    /// Mean residual, in N.
+    pub(crate) fn mean_n(&self) -> f64 {
+        self.residuals / self.n_samples.max(1) as f64
+    }
+
+    pub(crate) fn statistics(&self) -> FitStatistics {
         let n = self.n_samples.max(1) as f64;
         let spread = (self.force_squares - self.forces * self.forces / n).max(f64::MIN_POSITIVE);
         let share = self.residual_squares / spread;

@@ -550,6 +550,7 @@ impl Identified {
             inputs,
             config,
             seed,
+            muscle_name: None,
             geometry: self.muscle.clone(),
             strand_modulus_pa: self.model.strand_modulus_pa(),
             form: self.model.form(),

@@ -4,9 +4,10 @@
 //! [`faults`] looks for broken instruments, [`condense`] turns rows into small triangles in one pass,
 //! [`search_space`] says what is fitted within which range, [`problem`] is the cost over that space,
 //! [`fit`] searches it, [`uncertainty`] says how well the result is known, [`evaluate`] compares it with
-//! recordings; [`geometry`] and [`robust`] are the slower ways with freed dimensions and robust weights;
+//! recordings, [`prediction`] row by row with the interval of [`band`]; [`geometry`] and [`robust`] are the slower ways with freed dimensions and robust weights;
 //! [`identify`] is all of it in order.
 
+pub mod band;
 pub mod condense;
 pub mod error;
 pub mod evaluate;
@@ -16,6 +17,7 @@ pub mod fit;
 pub mod geometry;
 pub mod identify;
 pub mod predict;
+pub mod prediction;
 pub mod prepare;
 pub mod problem;
 pub mod report;

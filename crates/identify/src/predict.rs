@@ -128,16 +128,35 @@ pub fn augmented_forces_n(
     Ok(forces_n)
 }
 
+/// Where a model is no extrapolation: what it was identified on, and a margin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trusted {
+    /// Lowest and highest gauge pressure, in Pa.
+    pub pressure_pa: [f64; 2],
+    /// Shortest and longest length, in m.
+    pub length_m: [f64; 2],
+}
+
+/// `domain` with a margin of six deviations of the recording's noise and a percent of the range.
+pub fn trusted(prepared: &Prepared, domain: &Domain) -> Trusted {
+    let widened = |name: &str, [low, high]: [f64; 2]| {
+        let noise = prepared.quality.channel(name).map_or(0.0, |channel| channel.noise);
+        let margin = 6.0 * noise + 0.01 * (high - low);
+        [low - margin, high + margin]
+    };
+    Trusted { pressure_pa: widened("pressure", domain.pressure_pa), length_m: widened("length", domain.length_m) }
+}
+
 /// How far a recording leaves what the model was identified on, in words; empty where it stays inside.
 pub fn outside(prepared: &Prepared, domain: &Domain) -> Vec<String> {
     let mut words = Vec::new();
-    for (name, [low, high], scale, unit) in
-        [("pressure", domain.pressure_pa, 1e-3, "kPa"), ("length", domain.length_m, 1e3, "mm")]
-    {
+    let trusted = trusted(prepared, domain);
+    for (name, [low, high], [from, to], scale, unit) in [
+        ("pressure", domain.pressure_pa, trusted.pressure_pa, 1e-3, "kPa"),
+        ("length", domain.length_m, trusted.length_m, 1e3, "mm"),
+    ] {
         let Some(channel) = prepared.quality.channel(name) else { continue };
-        // Beyond the range by more than noise and a percent of the range.
-        let margin = 6.0 * channel.noise + 0.01 * (high - low);
-        if channel.lowest < low - margin || channel.highest > high + margin {
+        if channel.lowest < from || channel.highest > to {
             words.push(format!(
                 "{}: {name} runs from {:.1} to {:.1} {unit}, but the model was identified on {:.1} to {:.1} {unit}: the \
                  force is extrapolated",

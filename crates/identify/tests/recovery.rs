@@ -86,6 +86,7 @@ fn identify(muscle: &TrueMuscle, seed: u64, sensing: Sensing) -> ModelArtifact {
         estimation,
         validation: Vec::new(),
         muscle: MuscleFile {
+            name: None,
             muscle: muscle.muscle().clone(),
             fit: Vec::new(),
             strand_modulus_pa: muscle.contact_modulus_pa(),

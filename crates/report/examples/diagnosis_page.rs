@@ -149,6 +149,7 @@ fn effect() -> PageEffect {
         parameters: vec![
             PageParameter {
                 name: "slip_distance_m".to_owned(),
+                symbol: "δ".to_owned(),
                 meaning: "63 % of the friction are there after it".to_owned(),
                 value: 1.21e-3,
                 unit: "m".to_owned(),
@@ -157,6 +158,7 @@ fn effect() -> PageEffect {
             },
             PageParameter {
                 name: "friction_share".to_owned(),
+                symbol: String::new(),
                 meaning: "share of the friction of eq. 11".to_owned(),
                 value: 0.973,
                 unit: "1".to_owned(),
@@ -211,7 +213,14 @@ fn fit(recordings: &[PageRecording], held_out: bool) -> PageFit {
             .collect();
         (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
     };
-    PageFit { rmse_before_n: rmse_n(false), rmse_after_n: rmse_n(true), noise_floor_n: NOISE_N }
+    let (before_n, after_n) = (rmse_n(false), rmse_n(true));
+    PageFit {
+        rmse_before_n: before_n,
+        rmse_after_n: after_n,
+        rmse_all_before_n: before_n,
+        rmse_all_after_n: after_n,
+        noise_floor_n: NOISE_N,
+    }
 }
 
 fn page(effect_is_there: bool) -> DiagnosisPage {
@@ -232,6 +241,7 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
         as_given: None,
         estimation,
         holdout: Some(holdout),
+        base_parameters: Vec::new(),
         recordings,
         regions: Vec::new(),
         effects: Vec::new(),
@@ -242,6 +252,9 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
         isolability: Some(isolability()),
         appendix: PageAppendix {
             tool: "pam-diagnose 0.1.0".to_owned(),
+            muscle: "muscle A".to_owned(),
+            command: "pam-diagnose a.csv b.csv --model model.json".to_owned(),
+            date: "2024-02-29".to_owned(),
             inputs: inputs
                 .map(|(role, path)| PageInput {
                     role: role.to_owned(),
@@ -268,7 +281,6 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
         page.effects = vec![effect()];
         page.candidates = candidates();
         page.unknown = PageUnknown {
-            unexplained_share: 0.03,
             regions: vec![region(PageCoordinate::Speed, 0.0, 0.4e-3, 0.02, 0.03)],
             implausible: vec![PageImplausible {
                 parameter: "k1".to_owned(),

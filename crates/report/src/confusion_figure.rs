@@ -22,7 +22,7 @@ const CELL: f64 = 30.0;
 /// Draws the figure, as an SVG document that grows with the number of names.
 ///
 /// # Errors
-/// [`FigureError::Backend`] if the drawing library gives up.
+/// [`FigureError::TooLarge`] where there are more names than a sheet has room for.
 pub fn confusion_figure(figure: &ConfusionFigure) -> Result<String, FigureError> {
     let (rows, columns) = (&figure.concealed, &figure.named);
     let count = |row: usize, column: usize| figure.counts.get(row).and_then(|row| row.get(column)).copied();

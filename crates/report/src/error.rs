@@ -21,10 +21,25 @@ pub enum FigureError {
         /// Samples in the column.
         found: usize,
     },
-    /// The drawing library gave up.
-    #[error("cannot draw: {reason}")]
-    Backend {
-        /// What it said.
+    /// No viewer shows a sheet of this size.
+    #[error("a figure of {width} × {height} pixels is larger than a viewer shows; draw fewer recordings")]
+    TooLarge {
+        /// Width, in pixels.
+        width: u32,
+        /// Height, in pixels.
+        height: u32,
+    },
+    /// No font on this machine.
+    #[error(
+        "letters of a PNG or PDF need a font and none is installed; install one, such as DejaVu Sans, or write SVG"
+    )]
+    NoFont,
+    /// A library that turns SVG into something else gave up.
+    #[error("cannot turn the figure into {format}: {reason}; write SVG")]
+    Conversion {
+        /// What it was to become.
+        format: &'static str,
+        /// What the library said.
         reason: String,
     },
 }

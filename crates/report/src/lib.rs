@@ -3,8 +3,8 @@
 //! Nothing here prints, opens a file or knows a muscle: figures take plain columns and give an SVG document,
 //! tables take cells and give lines. Equal input gives equal bytes.
 //!
-//! In reading order: [`number`] (how numbers are written), [`Table`], [`plot`] (what figures are made of),
-//! [`fit_figure()`] (the figure of a fit), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
+//! In reading order: [`number`] (how numbers are written), [`Table`], [`text`] (what fits a terminal), [`plot`] (what figures are made of),
+//! [`fit_figure()`] (the figure of a fit), [`prediction_figure()`] (of a prediction), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
 //! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`signature_figure()`] (what
 //! an effect looks like), [`confusion_figure()`] (what was concealed and what was named).
 
@@ -17,21 +17,28 @@ mod fit_figure;
 mod inverse_figure;
 mod lift_figure;
 pub mod number;
+mod page;
+mod picture;
 pub mod plot;
+mod prediction_figure;
 mod residual_cells;
 mod signature_figure;
 mod table;
+pub mod text;
 
 pub use confusion_figure::{ConfusionFigure, confusion_figure};
 pub use diagnosis_page::{
-    DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect, PageEmpirical,
-    PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter,
-    PageRecording, PageRegion, PageShift, PageSymbol, PageTerm, PageUnknown, PageVerdict, diagnosis_page,
+    DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageCoordinate, PageEffect,
+    PageEmpirical, PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput,
+    PageIsolability, PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageTerm, PageUnknown,
+    PageVerdict, diagnosis_page,
 };
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;
 pub use fit_figure::{FitFigure, FitRecording, Role, SwarmStart, fit_figure};
 pub use inverse_figure::{InverseCell, InverseFigure, InverseMap, RegionBar, SlopeCell, SlopeMap, inverse_figure};
 pub use lift_figure::{LiftArm, LiftFigure, lift_figure};
+pub use picture::PictureFormat;
+pub use prediction_figure::{PredictionFigure, prediction_figure};
 pub use signature_figure::{SignatureFigure, SignaturePanel, SignatureSeries, signature_figure};
 pub use table::Table;

@@ -2,6 +2,7 @@
 
 use crate::FigureError;
 use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, thin};
+use crate::residual_cells::quantile;
 
 /// Everything that the figure shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,10 +74,11 @@ fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
         values.fold((f64::NAN, f64::NAN), |(low, high): (f64, f64), value| (low.min(value), high.max(value)))
     };
     let (x, y) = (extent(|(x, _)| x), extent(|(_, y)| y));
+    let values: Vec<f64> = panel.series.iter().flat_map(points).map(|(x, _)| x).collect();
     // Below the title a row for the legend.
     let axes = Panel::new(
         cell.inset(0.0, 18.0, 0.0, 0.0),
-        Axis::linear(&*panel.x_label, x.0, x.1, 5),
+        x_axis(panel, &values, x),
         Axis::linear(&*panel.y_label, y.0, y.1, 5),
         18.0,
     );
@@ -86,20 +88,39 @@ fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
     }
     let mut keys = Vec::new();
     // A line by itself is what the effect does.
-    let colors = COLORS.iter().cycle().skip(usize::from(panel.series.len() == 1));
-    for (line, color) in panel.series.iter().zip(colors) {
+    let alone = panel.series.len() == 1;
+    let colors = COLORS.iter().cycle().skip(usize::from(alone));
+    for (index, (line, color)) in panel.series.iter().zip(colors).enumerate() {
+        // What is expected is broad and pale below what the effect does, so that both are seen where they coincide.
+        let (color, width) = match index {
+            0 if alone => (color.faded(0.75), 1.1),
+            0 => (color.faded(0.3), 5.0),
+            _ => (*color, 1.4),
+        };
         // From reversal to reversal a coordinate may start anew: no line leads back.
         let far = 0.2 * (axes.x.to - axes.x.from);
         let values: Vec<(f64, f64)> = points(line).collect();
         for run in values.chunk_by(|a, b| (a.0 - b.0).abs() < far) {
             let ys: Vec<f64> = run.iter().map(|(_, y)| *y).collect();
-            axes.line(canvas, thin(&ys, POINTS).into_iter().map(|row| run[row]), *color, 1.9);
+            let within = |row: usize| (run[row].0.max(axes.x.from), run[row].1);
+            axes.line(canvas, thin(&ys, POINTS).into_iter().map(within), color, width);
         }
-        keys.push(Key::new(line.name.clone(), Mark::Line(1.9), *color));
+        keys.push(Key::new(line.name.clone(), Mark::Line(width), color));
     }
     canvas.bold(&panel.title, (axes.frame.left, cell.top + 14.0), Anchor::Start, 13.5, palette::INK);
     if panel.series.len() > 1 {
         legend(canvas, &keys, axes.frame.right, cell.top + 40.0);
+    }
+}
+
+/// A logarithmic axis where most of what is to be seen lies close to zero, as it does right after a reversal.
+fn x_axis(panel: &SignaturePanel, values: &[f64], (lowest, highest): (f64, f64)) -> Axis {
+    let positive: Vec<f64> = values.iter().copied().filter(|value| *value > 0.0).collect();
+    let (low, middle) = (quantile(&positive, 0.02), quantile(&positive, 0.5));
+    if lowest >= 0.0 && panel.series.len() == 1 && middle < 0.15 * highest && highest > 20.0 * low {
+        Axis::logarithmic(&*panel.x_label, low.max(1e-4 * highest), highest)
+    } else {
+        Axis::linear(&*panel.x_label, lowest, highest, 5)
     }
 }
 

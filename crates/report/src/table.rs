@@ -34,13 +34,13 @@ impl Table {
 
     /// For a terminal; every line ends with a line break.
     pub fn to_terminal(&self) -> String {
-        let drawn = self.draw(LIGHT, |cell| cell.to_owned());
+        let drawn = self.draw(LIGHT, true, |cell| cell.to_owned());
         drawn.lines().map(|line| format!("{}\n", line.trim_end())).collect()
     }
 
     /// As a Markdown table; every line ends with a line break.
     pub fn to_markdown(&self) -> String {
-        let drawn = self.draw(presets::ASCII_MARKDOWN, |cell| cell.replace('|', "\\|"));
+        let drawn = self.draw(presets::ASCII_MARKDOWN, false, |cell| cell.replace('|', "\\|"));
         let mut text = String::new();
         for (index, line) in drawn.lines().enumerate() {
             if index == 1 {
@@ -59,10 +59,16 @@ impl Table {
 
     /// As an HTML table; cells of columns that hold numbers have the class `number`.
     pub fn to_html(&self) -> String {
+        self.to_html_with(escaped)
+    }
+
+    /// The same, with the first column as `first` sets it; what that gives is taken as markup.
+    pub(crate) fn to_html_with(&self, first: impl Fn(&str) -> String) -> String {
         let columns = self.columns();
         let line = |name: &str, cells: &[String]| {
             let cell = |column: usize| {
-                let text = cells.get(column).map_or(String::new(), |cell| escaped(cell));
+                let set = |cell: &String| if column == 0 && name == "td" { first(cell) } else { escaped(cell) };
+                let text = cells.get(column).map_or(String::new(), set);
                 let class = if self.is_numeric(column) { " class=\"number\"" } else { "" };
                 format!("<{name}{class}>{text}</{name}>")
             };
@@ -76,7 +82,7 @@ impl Table {
         self.rows.iter().map(Vec::len).max().unwrap_or(0).max(self.header.len())
     }
 
-    fn draw(&self, style: TableStyle, escape: impl Fn(&str) -> String) -> String {
+    fn draw(&self, style: TableStyle, terminal: bool, escape: impl Fn(&str) -> String) -> String {
         let columns = self.columns();
         let padded = |cells: &[String]| -> Vec<String> {
             (0..columns).map(|column| cells.get(column).map_or(String::new(), |cell| escape(cell))).collect()
@@ -87,6 +93,10 @@ impl Table {
             table.add_row(padded(row));
         }
         for (index, column) in table.column_iter_mut().enumerate() {
+            // Two blanks between columns: more would cost a terminal a column.
+            if terminal {
+                column.set_padding((1, 0));
+            }
             if self.is_numeric(index) {
                 column.set_cell_alignment(CellAlignment::Right);
             }
@@ -125,11 +135,11 @@ mod tests {
 
     #[test]
     fn a_terminal_table_is_light_and_aligned() {
-        let expected = " parameter                 value   status
-────────────────────────────────────────────
- gas_gain          1.052 ± 0.004   fitted
- friction|rubber     −12.5 ± 0.3   at_bound
- tare                          –
+        let expected = " parameter                value  status
+─────────────────────────────────────────
+ gas_gain         1.052 ± 0.004  fitted
+ friction|rubber    −12.5 ± 0.3  at_bound
+ tare                         –
 ";
         assert_eq!(parameters().to_terminal(), expected);
     }

@@ -6,12 +6,16 @@
 pub mod diagnosis;
 mod effect_entry;
 mod empirical;
+pub mod estimates;
 pub mod inverse;
 pub mod model;
+pub mod prediction;
 
 pub use diagnosis::DiagnosisArtifact;
+pub use estimates::Estimates;
 pub use inverse::InverseArtifact;
 pub use model::ModelArtifact;
+pub use prediction::PredictionArtifact;
 
 use std::path::{Path, PathBuf};
 

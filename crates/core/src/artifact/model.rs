@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use super::effect_entry::EffectEntry;
-use super::{ArtifactError, Input, Tool};
+use super::{ArtifactError, Input, InputRole, Tool};
 use crate::direction::{Standstill, Thresholds};
 use crate::effects::{AugmentedModel, Kind};
 use crate::force::{BaseParameters, ForceModel, Form, Parameter};
@@ -32,6 +32,9 @@ pub struct ModelArtifact {
     pub config: IdentifyConfig,
     /// Seed of every random draw.
     pub seed: u64,
+    /// Name of the muscle, where its file gives one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub muscle_name: Option<String>,
     /// Dimensions of the muscle, fitted ones as fitted.
     pub geometry: Muscle,
     /// Modulus of the strands that their contact was computed with, in Pa.
@@ -418,6 +421,22 @@ impl ModelArtifact {
         self.parameters.iter().find(|entry| entry.name == name).map_or(f64::NAN, |entry| entry.value)
     }
 
+    /// What to call the muscle: its name, or else that of its file, or else its dimensions.
+    pub fn muscle_title(&self) -> String {
+        if let Some(name) = &self.muscle_name {
+            return name.clone();
+        }
+        let Muscle { rest_length_m, rest_radius_m, .. } = self.geometry;
+        let size = format!("{:.0} mm, radius {:.1} mm", 1e3 * rest_length_m, 1e3 * rest_radius_m);
+        let file = self.inputs.iter().find(|input| input.role == InputRole::Muscle);
+        let stem = file.and_then(|input| Path::new(&input.path).file_stem()?.to_str());
+        let name = stem.map(|stem| stem.trim_start_matches("muscle").trim_matches(['-', '_', ' ', '.']));
+        match name.filter(|name| !name.is_empty()) {
+            Some(name) => format!("muscle {name} ({size})"),
+            None => format!("muscle of {size}"),
+        }
+    }
+
     /// Eq. 11 with the values of the artifact, without the effects beyond it.
     pub fn force_model(&self) -> ForceModel {
         let mut parameters = BaseParameters { theta: [0.0; 8] };
@@ -485,6 +504,7 @@ mod tests {
                 accept_implausible: false,
             },
             seed: 1,
+            muscle_name: None,
             geometry: nominal(),
             strand_modulus_pa: 3e9,
             form: Form::Corrected,

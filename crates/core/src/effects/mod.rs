@@ -19,6 +19,7 @@ pub mod moment;
 pub mod page;
 pub mod sentence;
 pub mod slip;
+pub mod symbols;
 
 mod prony;
 

@@ -19,6 +19,8 @@ pub struct DiagnosisPage {
     pub estimation: PageFit,
     /// The same on recordings that nothing was fitted to.
     pub holdout: Option<PageFit>,
+    /// Base parameters before and after.
+    pub base_parameters: Vec<PageBaseParameter>,
     /// The samples.
     pub recordings: Vec<PageRecording>,
     /// Where model and recordings differ, the largest share first; empty where they agree.
@@ -42,10 +44,10 @@ pub struct DiagnosisPage {
 /// The model as it was given, before it was refitted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PageGiven {
-    /// Residual on the recordings used for fitting, in N.
-    pub rmse_n: f64,
-    /// Residual on held-out recordings, in N.
-    pub holdout_rmse_n: Option<f64>,
+    /// Residual on the recordings used for fitting: over counted and over all samples, in N.
+    pub rmse_n: [f64; 2],
+    /// Residual on held-out recordings, likewise.
+    pub holdout_rmse_n: Option<[f64; 2]>,
     /// Residual of the refitted model, in N.
     pub refitted_rmse_n: f64,
     /// Whether it misses the recordings by clearly more than the refitted model does.
@@ -73,6 +75,32 @@ pub struct PageShift {
     pub standard_errors: Option<f64>,
 }
 
+/// A base parameter, composite or dimension before and after the effects were added.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageBaseParameter {
+    /// Name in artifacts.
+    pub name: String,
+    /// Symbol in eq. 11; may be empty.
+    pub symbol: String,
+    /// Unit of both values; `1` where there is none.
+    pub unit: String,
+    /// As identified.
+    pub before: PageEstimate,
+    /// Refitted beside the effects.
+    pub after: PageEstimate,
+}
+
+/// A value with what is known of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageEstimate {
+    /// Value, SI.
+    pub value: f64,
+    /// Standard error, where there is one.
+    pub stderr: Option<f64>,
+    /// How the value came about, in words: `fitted`, `at its bound`; may be empty.
+    pub status: String,
+}
+
 /// What is to be believed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PageVerdict {
@@ -88,13 +116,17 @@ pub enum PageVerdict {
     Unexplained,
 }
 
-/// Root mean squares of residuals.
+/// Root mean squares of residuals. The mismatch of the page, wherever it is spoken of, is `rmse_before_n`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PageFit {
-    /// Base model, in N.
+    /// Base model over counted samples, in N.
     pub rmse_before_n: f64,
-    /// Base model and effects, in N.
+    /// Base model and effects over counted samples, in N.
     pub rmse_after_n: f64,
+    /// Base model over all samples, reversals included, in N.
+    pub rmse_all_before_n: f64,
+    /// Base model and effects over all samples, in N.
+    pub rmse_all_after_n: f64,
     /// What noise leaves of any model, in N.
     pub noise_floor_n: f64,
 }
@@ -163,6 +195,8 @@ pub struct PageSymbol {
 pub struct PageParameter {
     /// Name.
     pub name: String,
+    /// Symbol in the equation; may be empty.
+    pub symbol: String,
     /// Meaning; may be empty.
     pub meaning: String,
     /// Value, SI; shown with the prefix that reads best.
@@ -223,8 +257,6 @@ pub struct PageCandidate {
 /// What is still unknown.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PageUnknown {
-    /// Share of the excess over the noise floor that the effects leave, in [0, 1].
-    pub unexplained_share: f64,
     /// Where structure is left.
     pub regions: Vec<PageRegion>,
     /// Base parameters that no such muscle has.
@@ -275,6 +307,12 @@ pub struct PageIsolability {
 pub struct PageAppendix {
     /// Program and version.
     pub tool: String,
+    /// The muscle.
+    pub muscle: String,
+    /// Command that wrote it, as typed; may be empty.
+    pub command: String,
+    /// Date, year first, and what it is the date of; may be empty.
+    pub date: String,
     /// Files that went into it.
     pub inputs: Vec<PageInput>,
     /// Options as resolved, name and value.

@@ -2,13 +2,13 @@
 
 use super::fit_bars::fit_bars;
 use super::headline::share_explained;
-use super::html::{figure, heading, list, newtons, paragraph, percent, table};
 use super::loops::{Stretch, loops};
 use super::place::regions_table;
 use super::samples::Samples;
-use super::{DiagnosisPage, PageAppendix, PageExperiment};
+use super::{DiagnosisPage, PageAppendix, PageBaseParameter, PageEstimate, PageExperiment, whiteness};
 use crate::escape::escaped;
-use crate::number::engineering;
+use crate::number::{engineering, engineering_with_stderr, significant};
+use crate::page::html::{figure, heading, list, newtons, paragraph, percent, remark, symbol_table, table};
 use crate::{FigureError, Table};
 
 /// Section: what the effects buy.
@@ -37,10 +37,19 @@ pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Strin
         let svg = fit_bars("Residual on held-out recordings", &[("held-out recordings", fit)], true)?;
         html.push_str(&figure(&svg, "Residual on held-out recordings, before and after, against the noise floor."));
     }
+    if !page.base_parameters.is_empty() {
+        html.push_str(&heading("Base parameters before and after"));
+        html.push_str(&symbol_table(&base_parameters(&page.base_parameters)));
+        html.push_str(&remark(
+            "Before: as identified, without the effects. After: fitted together with them. Each ± is one standard error, and \
+             says how well the recordings determine a value if the model is right.",
+        ));
+    }
     if let Some(stretch) = Stretch::most_telling(recordings) {
         html.push_str(&heading("A loop before and after"));
+        let which = if stretch.is_closed() { "The closed loop" } else { "The stretch" };
         let caption = format!(
-            "The stretch that gains most: {}. On the right a parabola through the measured force is taken off all three, \
+            "{which} that gains most: {}. On the right a parabola through the measured force is taken off all three, \
              so that the loop opens.",
             stretch.words()
         );
@@ -50,16 +59,22 @@ pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Strin
 }
 
 /// Section: what is still unknown.
-pub(super) fn unknown(page: &DiagnosisPage) -> String {
+pub(super) fn unknown(page: &DiagnosisPage, recordings: &[Samples]) -> Result<String, FigureError> {
     let unknown = &page.unknown;
-    let mut html = if page.regions.is_empty() && page.effects.is_empty() {
-        paragraph("The base model leaves no excess over the noise floor that matters, so there is nothing to explain.")
-    } else {
-        paragraph(&format!(
-            "{} of the excess over the noise floor (mean squares) is left without an explanation.",
-            percent(unknown.unexplained_share)
-        ))
+    let mut html = match share_explained(page.estimation) {
+        _ if page.regions.is_empty() && page.effects.is_empty() => paragraph(
+            "The base model leaves no excess over the noise floor that matters, so there is nothing to explain.",
+        ),
+        Some(share) => {
+            let left = if page.effects.is_empty() { 1.0 } else { 1.0 - share };
+            paragraph(&format!(
+                "{} of the excess over the noise floor (mean squares, counted samples) is left without an explanation.",
+                percent(left)
+            ))
+        }
+        None => paragraph("What is left does not exceed the noise floor."),
     };
+    html.push_str(&whiteness::whiteness(recordings)?);
     if unknown.regions.is_empty() {
         html.push_str(&paragraph("No structure is left that would stand out of the noise."));
     } else {
@@ -89,7 +104,32 @@ pub(super) fn unknown(page: &DiagnosisPage) -> String {
         }
         html.push_str(&table(&rows));
     }
-    html
+    Ok(html)
+}
+
+/// Values before and after, with how far each moved.
+fn base_parameters(parameters: &[PageBaseParameter]) -> Table {
+    let mut rows = Table::new(["symbol", "parameter", "before", "", "after", "", "change / standard error"]);
+    for entry in parameters {
+        let value = |estimate: &PageEstimate| match estimate.stderr {
+            Some(stderr) => engineering_with_stderr(estimate.value, stderr, &entry.unit),
+            None => engineering(estimate.value, &entry.unit, 3),
+        };
+        let known = entry.before.stderr.is_some() && entry.after.stderr.is_some();
+        let errors: f64 =
+            [&entry.before, &entry.after].iter().filter_map(|estimate| estimate.stderr).map(|e| e * e).sum();
+        let change = (entry.after.value - entry.before.value) / errors.sqrt();
+        rows.row([
+            entry.symbol.clone(),
+            entry.name.clone(),
+            value(&entry.before),
+            entry.before.status.clone(),
+            value(&entry.after),
+            entry.after.status.clone(),
+            if known && change.is_finite() { significant(change, 2) } else { "–".to_owned() },
+        ]);
+    }
+    rows
 }
 
 /// Section: what to record next.
@@ -119,8 +159,16 @@ pub(super) fn next(experiment: Option<&PageExperiment>) -> String {
 /// Section: how the diagnosis came about.
 pub(super) fn appendix(appendix: &PageAppendix) -> String {
     let mut html = String::new();
-    if !appendix.tool.is_empty() {
-        html.push_str(&paragraph(&format!("Written by {}.", appendix.tool)));
+    let facts = [("muscle", &appendix.muscle), ("date", &appendix.date), ("written by", &appendix.tool)];
+    let mut rows = Table::new(["", ""]);
+    for (name, value) in facts.into_iter().filter(|(_, value)| !value.is_empty()) {
+        rows.row([name, value.as_str()]);
+    }
+    if facts.iter().any(|(_, value)| !value.is_empty()) {
+        html.push_str(&table(&rows));
+    }
+    if !appendix.command.is_empty() {
+        html.push_str(&format!("<pre class=\"command\">{}</pre>\n", escaped(&appendix.command)));
     }
     if !appendix.inputs.is_empty() {
         let mut rows = Table::new(["input", "file", "SHA-256"]);

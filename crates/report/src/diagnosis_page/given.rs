@@ -1,14 +1,14 @@
 //! The model as it was given: what it misses before anything is refitted, and how far a refit moves its parameters.
 
 use super::PageGiven;
-use super::html::{heading, list, newtons, paragraph, table};
 use crate::Table;
 use crate::number::{engineering, significant};
+use crate::page::html::{heading, list, newtons, paragraph, table};
 
 /// Part of the section on the mismatch.
 pub(super) fn given(given: &PageGiven) -> String {
     let held_out =
-        given.holdout_rmse_n.map_or(String::new(), |rmse_n| format!(", {} on what was held out", newtons(rmse_n)));
+        given.holdout_rmse_n.map_or(String::new(), |[rmse_n, _]| format!(", {} on what was held out", newtons(rmse_n)));
     let verdict = if given.misses {
         " It misses them: they are of another muscle, or an instrument reads otherwise."
     } else {
@@ -17,7 +17,7 @@ pub(super) fn given(given: &PageGiven) -> String {
     let mut html = heading("The model as given")
         + &paragraph(&format!(
             "Before anything is refitted the model leaves {} on these recordings{held_out}; refitted it leaves {}.{verdict}",
-            newtons(given.rmse_n),
+            newtons(given.rmse_n[0]),
             newtons(given.refitted_rmse_n)
         ));
     if let Some(instrument) = &given.instrument {

@@ -1,8 +1,8 @@
 //! Top of the page: verdict, statement, the figures that matter.
 
-use super::html::{list, newtons, percent};
 use super::{DiagnosisPage, PageFit, PageVerdict};
 use crate::escape::escaped;
+use crate::page::html::{card, list, newtons, percent};
 
 pub(super) fn headline(page: &DiagnosisPage) -> String {
     let (class, words) = match page.verdict {
@@ -53,21 +53,18 @@ pub(super) fn share_explained(fit: PageFit) -> Option<f64> {
 }
 
 fn card_of_fit(label: &str, fit: PageFit, after: bool) -> String {
+    let all = newtons(fit.rmse_all_before_n);
     if !after {
-        return card(label, &newtons(fit.rmse_before_n), "residual of the base model, root mean square");
+        let note = format!("RMSE of the base model, counted samples; {all} over all samples");
+        return card(label, &newtons(fit.rmse_before_n), &note);
     }
     let figure = format!("{} → {}", newtons(fit.rmse_before_n), newtons(fit.rmse_after_n));
+    let all = format!("{all} → {} over all samples", newtons(fit.rmse_all_after_n));
     let note = match share_explained(fit) {
-        Some(share) => format!("residual; {} of the excess over the noise floor is gone", percent(share)),
-        None => "residual, root mean square".to_owned(),
+        Some(share) => {
+            format!("RMSE, counted samples; {} of the excess over the noise floor is gone; {all}", percent(share))
+        }
+        None => format!("RMSE, counted samples; {all}"),
     };
     card(label, &figure, &note)
-}
-
-fn card(label: &str, figure: &str, note: &str) -> String {
-    let (label, figure, note) = (escaped(label), escaped(figure), escaped(note));
-    format!(
-        "<div class=\"card\"><p class=\"label\">{label}</p><p class=\"figure\">{figure}</p>\
-         <p class=\"note\">{note}</p></div>\n"
-    )
 }

@@ -1,9 +1,11 @@
 //! Figure: one loop, measured and modelled, before and after.
 
+use std::ops::Range;
+
 use super::PageCoordinate;
 use super::samples::{Samples, extent};
-use super::style::{AFTER, BEFORE};
 use crate::FigureError;
+use crate::page::style::{AFTER, BEFORE};
 use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, thin};
 
 /// Points of a line.
@@ -14,25 +16,44 @@ const POINTS: usize = 1500;
 pub(super) struct Stretch<'a> {
     samples: &'a Samples,
     model_n: &'a [f64],
-    rows: std::ops::Range<usize>,
+    rows: Range<usize>,
+    coordinate: PageCoordinate,
+    is_closed: bool,
 }
 
 impl<'a> Stretch<'a> {
-    /// The cycle, of held-out recordings where there are any, whose mean square falls the most.
+    /// The closed loop, of held-out recordings where there are any, whose mean square falls the most; where no loop is closed,
+    /// the sixth of a recording.
     pub(super) fn most_telling(recordings: &'a [Samples]) -> Option<Self> {
         let held_out = recordings.iter().any(|samples| samples.held_out && samples.model_n.is_some());
+        let chosen = || recordings.iter().filter(|samples| samples.held_out == held_out);
+        let closed = chosen().flat_map(|samples| {
+            let coordinate = coordinate(samples);
+            closed_loops(samples, coordinate).into_iter().map(move |rows| (samples, coordinate, rows, true))
+        });
+        let sixths = chosen().flat_map(|samples| {
+            let n = samples.force_n.len();
+            (0..6).map(move |part| (samples, coordinate(samples), part * n / 6..(part + 1) * n / 6, false))
+        });
+        Self::best(closed).or_else(|| Self::best(sixths))
+    }
+
+    fn best(candidates: impl Iterator<Item = (&'a Samples, PageCoordinate, Range<usize>, bool)>) -> Option<Self> {
         let mut best: Option<(f64, Self)> = None;
-        for samples in recordings.iter().filter(|samples| samples.held_out == held_out) {
+        for (samples, coordinate, rows, is_closed) in candidates.filter(|(_, _, rows, _)| rows.len() >= 2) {
             let (Some(model_n), Some(after_n)) = (&samples.model_n, &samples.after_n) else { continue };
-            for rows in cycles(samples) {
-                let gain = rows.clone().map(|row| samples.before_n[row].powi(2) - after_n[row].powi(2)).sum::<f64>();
-                let gain = gain / rows.len() as f64;
-                if best.as_ref().is_none_or(|(most, _)| gain > *most) {
-                    best = Some((gain, Self { samples, model_n, rows }));
-                }
+            let gain = rows.clone().map(|row| samples.before_n[row].powi(2) - after_n[row].powi(2)).sum::<f64>();
+            let gain = gain / rows.len() as f64;
+            if best.as_ref().is_none_or(|(most, _)| gain > *most) {
+                best = Some((gain, Self { samples, model_n, rows, coordinate, is_closed }));
             }
         }
         best.map(|(_, stretch)| stretch)
+    }
+
+    /// Whether it ends where it began.
+    pub(super) fn is_closed(&self) -> bool {
+        self.is_closed
     }
 
     /// Where it lies, in words.
@@ -43,45 +64,91 @@ impl<'a> Stretch<'a> {
         format!("{}{held_out}, {}", self.samples.name, PageCoordinate::Time.interval(from, to))
     }
 
-    /// The coordinate that the force is drawn over: contraction, or pressure where the muscle hardly moves.
-    fn coordinate(&self) -> PageCoordinate {
-        let (lowest, highest) = extent(self.column(PageCoordinate::Contraction).iter().copied());
-        if highest - lowest > 1.0 { PageCoordinate::Contraction } else { PageCoordinate::Pressure }
-    }
-
     fn column(&self, coordinate: PageCoordinate) -> &[f64] {
         &self.samples.column(coordinate)[self.rows.clone()]
     }
 }
 
-/// Stretches of at least 50 samples: cycles, or sixths of a recording without.
-fn cycles(samples: &Samples) -> Vec<std::ops::Range<usize>> {
-    let cycle = samples.column(PageCoordinate::Cycle);
-    let mut stretches = Vec::new();
-    let mut start = 0;
-    for end in 1..=cycle.len() {
-        if end == cycle.len() || cycle[end] != cycle[start] {
-            stretches.push(start..end);
-            start = end;
+/// The coordinate that the force is drawn over: contraction, or pressure where the muscle hardly moves.
+fn coordinate(samples: &Samples) -> PageCoordinate {
+    let (lowest, highest) = extent(samples.column(PageCoordinate::Contraction).iter().copied());
+    if highest - lowest > 1.0 { PageCoordinate::Contraction } else { PageCoordinate::Pressure }
+}
+
+/// Share of a recording's range by which both ends of a loop may differ, and that a turn has to come back by.
+const CLOSED_WITHIN: f64 = 0.06;
+/// Share of the range that a loop has to span: a small one shows little.
+const LEAST_SPAN: f64 = 0.25;
+/// Fewer samples are no loop.
+const FEWEST: usize = 40;
+
+/// Stretches from a turn of `coordinate` to the next one to the same side, cut where the two are level; pressure and
+/// contraction both end where they began.
+fn closed_loops(samples: &Samples, coordinate: PageCoordinate) -> Vec<Range<usize>> {
+    let x = samples.column(coordinate);
+    let range = |values: &[f64]| {
+        let (lowest, highest) = extent(values.iter().copied());
+        highest - lowest
+    };
+    let span = range(x);
+    let turns = turns(x, CLOSED_WITHIN * span);
+    let channels = [PageCoordinate::Pressure, PageCoordinate::Contraction].map(|channel| samples.column(channel));
+    let mut loops = Vec::new();
+    for three in turns.windows(3) {
+        let [first, middle, last] = [three[0], three[1], three[2]];
+        let is_peak = x[first] > x[middle];
+        // The lower of two peaks, or the higher of two valleys, is where both ends can be.
+        let level = if is_peak { x[first].min(x[last]) } else { x[first].max(x[last]) };
+        let reached = |row: &usize| if is_peak { x[*row] <= level } else { x[*row] >= level };
+        let (Some(start), Some(end)) = ((first..middle).find(&reached), (middle..=last).rev().find(reached)) else {
+            continue;
+        };
+        let rows = start..end + 1;
+        let is_closed = channels.iter().all(|channel| {
+            let whole = range(channel);
+            // A channel that stands still all through moves by its noise alone.
+            (channel[start] - channel[end]).abs() <= CLOSED_WITHIN * whole.max(1e-9)
+                || range(&channel[rows.clone()]) <= CLOSED_WITHIN * whole
+        });
+        if is_closed && rows.len() >= FEWEST && range(&x[rows.clone()]) >= LEAST_SPAN * span {
+            loops.push(rows);
         }
     }
-    stretches.retain(|rows| rows.len() >= 50);
-    if stretches.len() < 2 {
-        let n = samples.force_n.len();
-        stretches = (0..6).map(|part| part * n / 6..(part + 1) * n / 6).filter(|rows| rows.len() >= 2).collect();
+    loops
+}
+
+/// Rows where `x` turns: extremes that it comes back from by more than `least`.
+fn turns(x: &[f64], least: f64) -> Vec<usize> {
+    let mut turns = Vec::new();
+    let (mut low, mut high, mut rising) = (0, 0, None);
+    for row in 0..x.len() {
+        if !x[row].is_finite() {
+            continue;
+        }
+        low = if x[row] < x[low] { row } else { low };
+        high = if x[row] > x[high] { row } else { high };
+        if rising != Some(true) && x[row] - x[low] > least {
+            turns.push(low);
+            (rising, high) = (Some(true), row);
+        } else if rising != Some(false) && x[high] - x[row] > least {
+            turns.push(high);
+            (rising, low) = (Some(false), row);
+        }
     }
-    stretches
+    // Where the recording ends it may have just come back.
+    turns.extend(rising.map(|rising| if rising { high } else { low }));
+    turns
 }
 
 /// Draws the loop as it is, and without its mean course.
 pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
-    let coordinate = stretch.coordinate();
+    let coordinate = stretch.coordinate;
     let x = stretch.column(coordinate);
     let rows = stretch.rows.clone();
     let lines: [(&[f64], Color, f64); 3] = [
-        (&stretch.samples.force_n[rows.clone()], palette::SILVER, 1.6),
-        (&stretch.samples.base_n[rows.clone()], BEFORE, 2.0),
-        (&stretch.model_n[rows], AFTER, 2.0),
+        (&stretch.samples.force_n[rows.clone()], palette::SILVER, 4.0),
+        (&stretch.samples.base_n[rows.clone()], BEFORE, 1.6),
+        (&stretch.model_n[rows], AFTER, 1.6),
     ];
     let course = parabola(x, lines[0].0);
     let without: Vec<Vec<f64>> = lines
@@ -106,7 +173,7 @@ pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
         let without = [0, 1, 2].map(|line| (without[line].as_slice(), lines[line].1, lines[line].2));
         draw(right, "The same, less the mean course of the measured force", "difference (N)", &without);
         let keys = [
-            Key::new("measured", Mark::Line(1.6), palette::SILVER),
+            Key::new("measured", Mark::Line(4.0), palette::SILVER),
             Key::new("base model", Mark::Line(2.0), BEFORE),
             Key::new("with the named effects", Mark::Line(2.0), AFTER),
         ];
@@ -167,6 +234,16 @@ mod tests {
         let y: Vec<f64> = x.iter().map(|x| 2.0 - x + 0.5 * x * x).collect();
         let course = parabola(&x, &y);
         assert!(x.iter().zip(&y).all(|(x, y)| (course.at(*x) - y).abs() < 1e-9));
+    }
+
+    #[test]
+    fn turns_are_extremes_and_small_wiggles_are_none() {
+        let x: Vec<f64> = (0..400).map(|row| (0.05 * f64::from(row)).sin() + 0.01 * f64::from(row % 2)).collect();
+        let found = turns(&x, 0.1);
+        // At the start, and at π/2, 3π/2, … of 0.05 rad each.
+        let expected = [0, 31, 94, 157, 220, 283, 346, 399];
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        assert!(found.iter().zip(expected).all(|(found, expected)| found.abs_diff(expected) <= 2), "{found:?}");
     }
 
     #[test]

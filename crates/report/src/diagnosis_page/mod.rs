@@ -4,48 +4,51 @@
 //! |--------------------|----------------------------------------------------------------------------------|
 //! | top                | verdict, statement, residuals before and after, noise floor                      |
 //! | mismatch           | whether there is one, and how the model as given compares with its refit         |
+//! | over time          | measured and modelled force, residual before and after, recording by recording   |
 //! | where              | regions; residual against each coordinate, over pressure and contraction, time   |
 //! | what               | effects with equation, parameters, evidence, rivals; everything that was weighed |
 //! |                    | what models the part without a name: equation, curve with its band, rivals       |
 //! | what it buys       | held-out recordings before and after; a loop before and after                    |
-//! | what is unknown    | what is left, and where; what cannot be decided; implausible parameters          |
+//! | what is unknown    | whether what is left is white, and where; what cannot be decided                 |
 //! | what to record     | the recording that would tell more                                               |
 //! | what can be told   | which effects these recordings could tell apart at all                           |
 //! | appendix           | inputs with digests, options                                                     |
 //!
-//! The page loads nothing and runs nothing; it follows the reader's preference for light or dark, and prints.
+//! The page loads nothing, follows the reader's preference for light or dark, and prints. A script lets the reader zoom into
+//! the forces, read values off and hide lines; without it everything is there but that.
 
 mod content;
 mod coordinate;
+mod correlation;
 mod empirical;
 mod ending;
 mod fit_bars;
 mod given;
 mod headline;
-mod html;
 mod loops;
 mod named;
+mod over_time;
 mod place;
 mod profiles;
 mod recording;
 mod residual_maps;
 mod samples;
-mod style;
+mod strip;
 mod telling_apart;
-mod time_lines;
+mod whiteness;
 
 pub use content::{
-    DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageEffect, PageEvidence, PageExperiment, PageFit,
-    PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter, PageRegion, PageShift, PageSymbol,
-    PageUnknown, PageVerdict,
+    DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageEffect, PageEstimate,
+    PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter,
+    PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
 };
 pub use coordinate::PageCoordinate;
 pub use empirical::{PageEmpirical, PageTerm};
 pub use recording::PageRecording;
 
-use crate::FigureError;
-use crate::escape::escaped;
-use html::{figure, newtons, paragraph};
+use crate::page::html::{self, figure, newtons, paragraph};
+use crate::page::{Section, document};
+use crate::{FigureError, Table};
 use samples::Samples;
 
 /// Writes the page, as an HTML document.
@@ -56,35 +59,20 @@ pub fn diagnosis_page(page: &DiagnosisPage) -> Result<String, FigureError> {
     let mut recordings = page.recordings.iter().map(Samples::new).collect::<Result<Vec<_>, _>>()?;
     recordings.retain(|samples| !samples.force_n.is_empty());
     let noise_n = page.estimation.noise_floor_n;
-    let sections = [
+    let sections: [Section; 9] = [
         ("mismatch", "Is there a mismatch?", mismatch(page)?),
+        ("time", "Measured and modelled force over time", over_time::over_time(page, &recordings)?),
         ("where", "Where do model and recordings differ?", place::place(page, &recordings)?),
         ("what", "What was left out?", named::named(page) + &empirical::empirical(page.empirical.as_ref())?),
         ("gain", "What does it buy?", ending::gain(page, &recordings)?),
-        ("unknown", "What is still unknown?", ending::unknown(page)),
+        ("unknown", "What is still unknown?", ending::unknown(page, &recordings)?),
         ("next", "What to record next", ending::next(page.next_experiment.as_ref())),
         ("apart", "What could these recordings tell apart at all?", {
             telling_apart::telling_apart(page.isolability.as_ref(), noise_n)?
         }),
         ("appendix", "Appendix: how this came about", ending::appendix(&page.appendix)),
     ];
-    let links: String = sections.iter().map(|(id, title, _)| format!("<a href=\"#{id}\">{title}</a>\n")).collect();
-    let body: String = sections
-        .iter()
-        .enumerate()
-        .map(|(index, (id, title, body))| {
-            let count = index + 1;
-            format!("<section id=\"{id}\">\n<h2><span class=\"count\">{count}</span>{title}</h2>\n{body}</section>\n")
-        })
-        .collect();
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n\
-         <style>\n{}</style>\n</head>\n<body>\n<main>\n{}<nav>\n{links}</nav>\n{body}</main>\n</body>\n</html>\n",
-        escaped(&page.title),
-        style::style(),
-        headline::headline(page),
-    ))
+    Ok(document(&page.title, &headline::headline(page), &sections, "", over_time::SCRIPT))
 }
 
 /// Section: whether there is a mismatch.
@@ -114,8 +102,40 @@ fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
     let mut fits = vec![("estimation recordings", page.estimation)];
     fits.extend(page.holdout.map(|fit| ("held-out recordings", fit)));
     let svg = fit_bars::fit_bars("Residual before and after", &fits, !page.effects.is_empty())?;
-    let caption = "Residual, root mean square over samples whose direction of motion is settled. No model comes below \
-                   the noise floor but by fitting noise.";
+    let caption = "RMSE over counted samples. Samples around reversals, where noise hides the direction of friction, and beyond \
+                   a sensor's range are not counted; the table has both.";
     let given = page.as_given.as_ref().map_or(String::new(), given::given);
-    Ok(paragraph(&text) + &figure(&svg, caption) + &given)
+    Ok(paragraph(&text) + &figure(&svg, caption) + &html::table(&side_by_side(page)) + &given)
+}
+
+/// RMSE over counted and over all samples, side by side.
+fn side_by_side(page: &DiagnosisPage) -> Table {
+    let after = !page.effects.is_empty();
+    let mut header = vec!["RMSE", "samples"];
+    header.extend(page.as_given.as_ref().map(|_| "as given"));
+    header.push("refitted");
+    header.extend(after.then_some("with the effects"));
+    header.push("noise floor");
+    let mut table = Table::new(header);
+    let given = page.as_given.as_ref();
+    let fits = [
+        ("estimation", Some(page.estimation), given.map(|given| given.rmse_n)),
+        ("held out", page.holdout, given.and_then(|given| given.holdout_rmse_n)),
+    ];
+    for (name, fit, given_n) in fits {
+        let Some(fit) = fit else { continue };
+        let rows = [
+            (name, "counted", 0, fit.rmse_before_n, fit.rmse_after_n, newtons(fit.noise_floor_n)),
+            ("", "all", 1, fit.rmse_all_before_n, fit.rmse_all_after_n, String::new()),
+        ];
+        for (name, samples, which, before_n, after_n, floor) in rows {
+            let mut cells = vec![name.to_owned(), samples.to_owned()];
+            cells.extend(given.map(|_| given_n.map_or("–".to_owned(), |given_n| newtons(given_n[which]))));
+            cells.push(newtons(before_n));
+            cells.extend(after.then(|| newtons(after_n)));
+            cells.push(floor);
+            table.row(cells);
+        }
+    }
+    table
 }

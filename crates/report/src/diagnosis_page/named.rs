@@ -1,9 +1,9 @@
 //! Section: which effects were left out of the model.
 
-use super::html::{equation, heading, newtons, paragraph, percent, remark, symbols, table};
 use super::{DiagnosisPage, PageAlternative, PageCandidate, PageEffect, PageEvidence, PageParameter, PageVerdict};
 use crate::escape::escaped;
 use crate::number::{engineering, engineering_with_stderr, probability, significant};
+use crate::page::html::{equation, heading, newtons, paragraph, percent, remark, symbol_table, symbols, table};
 use crate::{Table, number};
 
 pub(super) fn named(page: &DiagnosisPage) -> String {
@@ -16,14 +16,35 @@ pub(super) fn named(page: &DiagnosisPage) -> String {
     html.extend(page.effects.iter().map(effect));
     if !page.candidates.is_empty() {
         html.push_str(&heading("What was weighed"));
-        html.push_str(&table(&candidates(&page.candidates)));
+        let (telling, rest): (Vec<&PageCandidate>, Vec<&PageCandidate>) =
+            page.candidates.iter().partition(|candidate| tells(candidate));
+        if telling.is_empty() {
+            html.push_str(&paragraph("No candidate of the catalogue explains anything by itself."));
+        } else {
+            html.push_str(&table(&candidates(&telling)));
+        }
         html.push_str(&remark(
             "Each candidate alone, fitted jointly with the base model to all blocks but one and judged on that one, in \
              turn. Evidence is the sum over held-out blocks of ln(mean square without / mean square with).",
         ));
+        if !rest.is_empty() {
+            let n = rest.len();
+            html.push_str(&format!(
+                "<details>\n<summary>{n} more that explain nothing</summary>\n{}</details>\n",
+                table(&candidates(&rest))
+            ));
+        }
     }
     html
 }
+
+/// Whether a candidate was named, or explains at least something by itself.
+fn tells(candidate: &PageCandidate) -> bool {
+    candidate.outcome == "named" || candidate.explains >= LEAST_EXPLAINED
+}
+
+/// Share of the excess below which a candidate is folded away.
+const LEAST_EXPLAINED: f64 = 0.02;
 
 fn effect(effect: &PageEffect) -> String {
     let (name, id) = (escaped(&capitalized(&effect.name)), escaped(&effect.id));
@@ -41,7 +62,7 @@ fn effect(effect: &PageEffect) -> String {
     }
     if !effect.parameters.is_empty() {
         html.push_str("<h4>Parameters</h4>\n");
-        html.push_str(&table(&parameters(&effect.parameters)));
+        html.push_str(&symbol_table(&parameters(&effect.parameters)));
     }
     html.push_str("<h4>Why it is believed</h4>\n");
     html.push_str(&paragraph(&evidence(&effect.evidence)));
@@ -69,19 +90,19 @@ fn effect(effect: &PageEffect) -> String {
 fn parameters(parameters: &[PageParameter]) -> Table {
     let any = |of: fn(&PageParameter) -> &str| parameters.iter().any(|parameter| !of(parameter).is_empty());
     let (meaning, status) = (any(|parameter| &parameter.meaning), any(|parameter| &parameter.status));
-    let row = |name: &str, value: String, status_text: &str, meaning_text: &str| {
-        let mut cells = vec![name.to_owned(), value];
+    let row = |[symbol, name]: [&str; 2], value: String, status_text: &str, meaning_text: &str| {
+        let mut cells = vec![symbol.to_owned(), name.to_owned(), value];
         cells.extend(status.then(|| status_text.to_owned()));
         cells.extend(meaning.then(|| meaning_text.to_owned()));
         cells
     };
-    let mut table = Table::new(row("parameter", "value".to_owned(), "status", "meaning"));
+    let mut table = Table::new(row(["symbol", "parameter"], "value".to_owned(), "status", "meaning"));
     for parameter in parameters {
         let value = match parameter.stderr {
             Some(stderr) => engineering_with_stderr(parameter.value, stderr, &parameter.unit),
             None => engineering(parameter.value, &parameter.unit, 3),
         };
-        table.row(row(&parameter.name, value, &parameter.status, &parameter.meaning));
+        table.row(row([&parameter.symbol, &parameter.name], value, &parameter.status, &parameter.meaning));
     }
     table
 }
@@ -114,7 +135,7 @@ fn alternative(alternative: &PageAlternative) -> String {
     html
 }
 
-fn candidates(candidates: &[PageCandidate]) -> Table {
+fn candidates(candidates: &[&PageCandidate]) -> Table {
     let mut table = Table::new(["candidate", "explains", "evidence", "blocks improved", "p", "outcome"]);
     for candidate in candidates {
         let evidence = &candidate.evidence;

@@ -1,14 +1,11 @@
 //! Section: where model and recordings differ.
 
-use super::html::{figure, heading, paragraph, percent, remark, table};
 use super::samples::Samples;
 use super::{DiagnosisPage, PageRegion};
-use super::{profiles, residual_maps, time_lines};
+use super::{profiles, residual_maps};
 use crate::number::probability;
+use crate::page::html::{figure, heading, paragraph, percent, remark, table};
 use crate::{FigureError, Table};
-
-/// Strips of the time line; more would not be looked at.
-const STRIPS: usize = 12;
 
 pub(super) fn place(page: &DiagnosisPage, recordings: &[Samples]) -> Result<String, FigureError> {
     let noise_n = page.estimation.noise_floor_n;
@@ -46,25 +43,6 @@ pub(super) fn place(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Stri
             "Red: the muscle pulls more than the model says; blue: less. The size, root mean square, also shows residuals \
              that cancel in the mean. Maps before and after share one color scale; cells without samples stay blank."
         },
-    ));
-    html.push_str(&heading("Over time"));
-    let mut shown: Vec<&Samples> = recordings.iter().collect();
-    if shown.len() > STRIPS {
-        let worst = |samples: &&Samples| samples.rms(&samples.before_n);
-        let mut ranked = shown.clone();
-        ranked.sort_by(|a, b| worst(b).total_cmp(&worst(a)));
-        let least = worst(&ranked[STRIPS - 1]);
-        shown.retain(|samples| worst(samples) >= least);
-        shown.truncate(STRIPS);
-        html.push_str(&remark(&format!("The {STRIPS} of {} recordings that differ most.", recordings.len())));
-    }
-    let floor = |samples: &Samples| match page.holdout {
-        Some(fit) if samples.held_out => fit.noise_floor_n,
-        _ => noise_n,
-    };
-    html.push_str(&figure(
-        &time_lines::time_lines(&shown, floor)?,
-        "Residual of each recording over time. Root mean squares are over samples whose direction of motion is settled.",
     ));
     Ok(html)
 }

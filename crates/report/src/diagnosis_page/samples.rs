@@ -53,6 +53,16 @@ impl Samples {
         &self.columns[at.unwrap_or(0)]
     }
 
+    /// Time, in s.
+    pub(super) fn time_s(&self) -> &[f64] {
+        self.column(PageCoordinate::Time)
+    }
+
+    /// Root mean square of `residual_n` over all samples.
+    pub(super) fn rms_all(&self, residual_n: &[f64]) -> f64 {
+        (residual_n.iter().map(|residual_n| residual_n * residual_n).sum::<f64>() / residual_n.len() as f64).sqrt()
+    }
+
     /// Residuals after, or before where there is no after.
     pub(super) fn last_n(&self) -> &[f64] {
         self.after_n.as_deref().unwrap_or(&self.before_n)

@@ -1,9 +1,13 @@
-//! Panels a and b: force against length and against pressure.
+//! Panels a and b: force against length and against pressure, in slow sweeps and at levels of the other channel; measured against
+//! modelled force where a recording has neither.
 
 use super::clean::{Clean, extent, mean, quantile};
+use super::sweeps::{Sweep, sweeps};
 use super::{CONTRACTING, EXTENDING, Role};
 use crate::number::significant;
-use crate::plot::{Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, round_levels, thin, title};
+use crate::plot::{
+    Axis, Canvas, Color, Key, Mark, Panel, Rect, density, legend, note, palette, round_levels, thin, title,
+};
 
 /// What runs along the horizontal axis; the other of the two tells curves apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,16 +35,12 @@ struct Mean {
 }
 
 impl Abscissa {
-    fn along(self, recording: &Clean) -> &[f64] {
+    pub(super) fn along(self, recording: &Clean) -> &[f64] {
         if self == Self::Length { &recording.length_mm } else { &recording.pressure_kpa }
     }
 
-    fn across(self, recording: &Clean) -> &[f64] {
+    pub(super) fn across(self, recording: &Clean) -> &[f64] {
         if self == Self::Length { &recording.pressure_kpa } else { &recording.length_mm }
-    }
-
-    fn other(self) -> Self {
-        if self == Self::Length { Self::Pressure } else { Self::Length }
     }
 
     /// Whether the channel stands still: a clamped muscle yields by less than half a percent, a regulated
@@ -67,27 +67,56 @@ impl Abscissa {
 }
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, (letter, abscissa): (&str, Abscissa), recordings: &[Clean]) {
-    let (still, moving): (Vec<&Clean>, Vec<&Clean>) =
-        recordings.iter().partition(|recording| abscissa.is_constant(recording, recordings));
+    let still: Vec<&Clean> =
+        recordings.iter().filter(|recording| abscissa.is_constant(recording, recordings)).collect();
+    let sweeps = sweeps(abscissa, recordings);
     let levels = levels(abscissa, &still);
-    let means: Vec<Mean> = still.iter().flat_map(|recording| means(abscissa, recording, &levels)).collect();
-
+    let mut means: Vec<Mean> = still.iter().flat_map(|recording| means(abscissa, recording, &levels)).collect();
+    // Levels of a single recording are dots one above the other, and no curve.
+    let no_curve = curves(&means, 0.0).iter().all(|curve| curve.model.len() < 2);
+    if no_curve {
+        means.clear();
+    }
+    if sweeps.is_empty() && no_curve {
+        agreement(canvas, cell, (letter, abscissa), recordings);
+        return;
+    }
     let along = extent(recordings.iter().flat_map(|recording| abscissa.along(recording).iter().copied()));
-    let forces = |recording: &&Clean| {
-        let (lowest, highest) = extent(recording.force_n.iter().chain(&recording.model_n).copied());
+    let forces = |sweep: &Sweep<'_>| {
+        let force_n = &sweep.recording.force_n[sweep.rows.clone()];
+        let (lowest, highest) = extent(force_n.iter().chain(&sweep.recording.model_n[sweep.rows.clone()]).copied());
         [lowest, highest]
     };
     let force =
-        extent(moving.iter().flat_map(forces).chain(means.iter().flat_map(|mean| [mean.force_n, mean.model_n])));
-    let labels = labels(abscissa, &moving, recordings, &means, &levels, along);
+        extent(sweeps.iter().flat_map(forces).chain(means.iter().flat_map(|mean| [mean.force_n, mean.model_n])));
+    let labels = labels(abscissa, &sweeps, &means, &levels, along);
     let right = if labels.is_empty() { 20.0 } else { 74.0 };
     let force_axis = Axis::linear("force (N)", force.0.min(0.0), force.1, 6);
     let panel = Panel::new(cell, abscissa.axis(along.0, along.1), force_axis, right);
     panel.draw_frame(canvas);
-    draw_moving(canvas, &panel, abscissa, &moving);
+    draw_sweeps(canvas, &panel, abscissa, &sweeps);
     draw_means(canvas, &panel, &means);
     panel.label_right(canvas, &labels);
-    draw_legend(canvas, cell, (letter, abscissa), (&panel, &moving, &means));
+    draw_legend(canvas, cell, (letter, abscissa), (&panel, &sweeps, &means));
+}
+
+/// Where there is no sweep: measured against modelled force, what was fitted on the left and what was held out on the right.
+fn agreement(canvas: &mut Canvas<'_>, cell: Rect, (letter, abscissa): (&str, Abscissa), recordings: &[Clean]) {
+    let has = |role: Role| recordings.iter().any(|recording| recording.role == role);
+    let (role, what) = match abscissa {
+        Abscissa::Length => (Role::Estimation, "Measured against modelled, estimation"),
+        Abscissa::Pressure => (Role::Validation, "Measured against modelled, validation"),
+    };
+    title(canvas, cell, letter, what);
+    if !has(role) {
+        note(canvas, cell, "no such recording");
+        return;
+    }
+    let chosen = || recordings.iter().filter(|recording| recording.role == role);
+    let ends = extent(chosen().flat_map(|recording| recording.force_n.iter().copied()));
+    let points =
+        chosen().flat_map(|recording| recording.model_n.iter().copied().zip(recording.force_n.iter().copied()));
+    density(canvas, cell, points, ends);
 }
 
 /// Round levels of the other channel, for recordings in which this one stands still.
@@ -130,33 +159,35 @@ fn means(abscissa: Abscissa, recording: &Clean, levels: &[f64]) -> Vec<Mean> {
     means
 }
 
-/// Measured force as a broad pale line, modelled force as a thin dark one on top.
-fn draw_moving(canvas: &mut Canvas<'_>, panel: &Panel, abscissa: Abscissa, moving: &[&Clean]) {
-    let budget = POINTS / moving.len().max(1);
+/// Measured force as a broad pale line, modelled force as a thin dark one that leaves it in sight.
+fn draw_sweeps(canvas: &mut Canvas<'_>, panel: &Panel, abscissa: Abscissa, sweeps: &[Sweep<'_>]) {
+    let budget = POINTS / sweeps.len().max(1);
     for modelled in [false, true] {
-        for recording in moving {
-            let along = abscissa.along(recording);
+        for Sweep { recording, rows, .. } in sweeps {
+            let along = &abscissa.along(recording)[rows.clone()];
             let force = if modelled { &recording.model_n } else { &recording.force_n };
-            let mut runs = runs(&recording.contracting);
+            let force = &force[rows.clone()];
+            let contracting = &recording.contracting[rows.clone()];
+            let mut runs = runs(contracting);
             let told_apart = runs.len() <= MOST_RUNS;
             if !told_apart {
                 runs = std::iter::once(0..along.len()).collect();
             }
             for run in runs {
-                let color = match (told_apart, recording.contracting[run.start]) {
+                let color = match (told_apart, contracting[run.start]) {
                     (false, _) => palette::GRAY,
                     (true, true) => CONTRACTING,
                     (true, false) => EXTENDING,
                 };
                 // One sample of the next run closes the gap between the two.
                 let run = run.start..(run.end + 1).min(along.len());
-                let limit = (budget * run.len() / along.len()).clamp(12, 2000);
+                let limit = (budget * run.len() / along.len()).clamp(12, 1500);
                 let kept = thin(&force[run.clone()], limit);
                 let values = kept.into_iter().map(|row| (along[run.start + row], force[run.start + row]));
                 if modelled {
-                    panel.line(canvas, values, color.toward(palette::INK, 0.25), 1.5);
+                    panel.line(canvas, values, palette::INK, 1.0);
                 } else {
-                    panel.line(canvas, values, color.faded(0.3), 2.5);
+                    panel.line(canvas, values, color.faded(0.45), 3.4);
                 }
             }
         }
@@ -239,8 +270,7 @@ fn curves(means: &[Mean], same: f64) -> Vec<Curve> {
 /// What is written at the right ends of curves: the other channel's value.
 fn labels(
     abscissa: Abscissa,
-    moving: &[&Clean],
-    recordings: &[Clean],
+    sweeps: &[Sweep<'_>],
     means: &[Mean],
     levels: &[f64],
     (lowest, highest): (f64, f64),
@@ -258,18 +288,15 @@ fn labels(
             add(abscissa.level_text(levels[curve.level]), curve.end.1);
         }
     }
-    for recording in moving {
-        if !abscissa.other().is_constant(recording, recordings) {
-            continue;
-        }
-        let along = abscissa.along(recording);
+    for Sweep { recording, rows, level, .. } in sweeps {
+        let along = &abscissa.along(recording)[rows.clone()];
         let end = quantile(along, 0.97);
-        if !reaches_edge(end) {
-            continue;
+        if reaches_edge(end) {
+            let force_n = &recording.force_n[rows.clone()];
+            let at_end: Vec<f64> =
+                along.iter().zip(force_n).filter(|(x, _)| **x >= end).map(|(_, force)| *force).collect();
+            add(abscissa.level_text(*level), mean(&at_end));
         }
-        let at_end: Vec<f64> =
-            along.iter().zip(&recording.force_n).filter(|(x, _)| **x >= end).map(|(_, force)| *force).collect();
-        add(abscissa.level_text(mean(abscissa.across(recording))), mean(&at_end));
     }
     labels.into_iter().map(|(text, sum, count)| (sum / count, text, palette::GRAY)).collect()
 }
@@ -278,27 +305,27 @@ fn draw_legend(
     canvas: &mut Canvas<'_>,
     cell: Rect,
     (letter, abscissa): (&str, Abscissa),
-    (panel, moving, means): (&Panel, &[&Clean], &[Mean]),
+    (panel, sweeps, means): (&Panel, &[Sweep<'_>], &[Mean]),
 ) {
     let what = match (abscissa, means.is_empty()) {
-        (Abscissa::Length, true) => "Force against length",
+        (Abscissa::Length, true) => "Force against length, slow sweeps",
         (Abscissa::Length, false) => "Force against length, at levels of pressure",
-        (Abscissa::Pressure, true) => "Force against pressure",
+        (Abscissa::Pressure, true) => "Force against pressure, slow sweeps",
         (Abscissa::Pressure, false) => "Force against pressure, at levels of length",
     };
     let (y, _) = title(canvas, cell, letter, what);
     let mut keys =
         vec![Key::new("contracting", Mark::Patch, CONTRACTING), Key::new("extending", Mark::Patch, EXTENDING)];
-    if !moving.is_empty() {
-        keys.push(Key::new("measured", Mark::Line(4.0), palette::GRAY.faded(0.4)));
+    if !sweeps.is_empty() {
+        keys.push(Key::new("measured", Mark::Line(4.0), palette::GRAY.faded(0.5)));
     }
     if !means.is_empty() {
-        let text = if moving.is_empty() { "measured" } else { "mean" };
+        let text = if sweeps.is_empty() { "measured" } else { "mean" };
         keys.push(Key::new(text, Mark::Dot, palette::GRAY));
     }
     if means.iter().any(|mean| mean.role == Role::Validation) {
         keys.push(Key::new("validation", Mark::Ring, palette::GRAY));
     }
-    keys.push(Key::new("model", Mark::Line(1.7), palette::INK));
+    keys.push(Key::new("model", Mark::Line(1.2), palette::INK));
     legend(canvas, &keys, panel.frame.right, y + 17.0);
 }

@@ -2,7 +2,7 @@
 //!
 //! | panel | shows                                                                              |
 //! |-------|------------------------------------------------------------------------------------|
-//! | a     | force against length, measured and modelled, the two directions apart              |
+//! | a     | force against length in slow sweeps, measured and modelled, the directions apart   |
 //! | b     | force against pressure, likewise                                                   |
 //! | c     | residual over time, one recording after the other, against the noise of the gauge  |
 //! | d     | mean residual over pressure and length                                             |
@@ -10,7 +10,8 @@
 //! | f     | distribution of the residual against that of the noise                             |
 //!
 //! A recording at constant length is a vertical line in panel a, and one at constant pressure in panel b. There
-//! the panel shows averages at round levels of the other channel instead, joined across recordings.
+//! the panel shows averages at round levels of the other channel instead, joined across recordings. Where there is neither a
+//! sweep nor a level, the panel shows measured against modelled force, by density.
 
 mod characteristic;
 mod clean;
@@ -18,6 +19,7 @@ mod convergence;
 mod histogram;
 mod residual_map;
 mod residual_time;
+mod sweeps;
 
 use crate::FigureError;
 use crate::number::significant;

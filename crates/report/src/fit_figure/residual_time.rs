@@ -3,7 +3,7 @@
 use super::clean::{Clean, extent, mean, quantile};
 use super::{ESTIMATION, Role, VALIDATION};
 use crate::number::significant;
-use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, legend, palette, text_width, thin, title};
+use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, Timeline, legend, palette, text_width, title};
 
 /// Size of the recordings' names, in pixels.
 const NAME_SIZE: f64 = 11.0;
@@ -36,14 +36,13 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], no
     panel.draw_frame(canvas);
     for (recording, (from, to)) in recordings.iter().zip(&slots) {
         let pixels = panel.at(*to, 0.0).0 - panel.at(*from, 0.0).0;
-        let kept = thin(&recording.residual_n, ((2.0 * pixels) as usize).clamp(16, 2000));
         let start_s = recording.time_s[0];
-        let values = kept.into_iter().map(|row| {
-            let time_s = (from + recording.time_s[row] - start_s).clamp(*from, *to);
-            (time_s, recording.residual_n[row].clamp(panel.y.from, panel.y.to))
-        });
         let color = if recording.role == Role::Estimation { ESTIMATION } else { VALIDATION };
-        panel.line(canvas, values, color.toward(palette::INK, 0.2), 1.0);
+        let shifted: Vec<f64> =
+            recording.time_s.iter().map(|time_s| (from + time_s - start_s).clamp(*from, *to)).collect();
+        let points = ((2.0 * pixels) as usize).clamp(16, 2000);
+        let line = Timeline { time_s: &shifted };
+        line.line(canvas, &panel, &recording.residual_n, (color.toward(palette::INK, 0.2), 1.0), points);
     }
     panel.line(canvas, [(0.0, 0.0), (end_s, 0.0)], palette::INK.faded(0.5), 0.75);
     names.draw(canvas, &panel, recordings);
