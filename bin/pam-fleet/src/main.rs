@@ -1,6 +1,7 @@
 //! Many muscles beside one another: which of them, which rig and which date differs.
 
 mod args;
+mod page;
 mod run;
 
 fn main() -> std::process::ExitCode {

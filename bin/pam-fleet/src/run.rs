@@ -7,8 +7,10 @@ use pam_fleet_survey::plan::FleetPlan;
 use pam_fleet_survey::sheet::write_sheet;
 use pam_fleet_survey::survey::Survey;
 use pam_fleet_survey::table::read_table;
+use pam_report::fleet_page;
 
 use crate::args::Args;
+use crate::page::page;
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let console = args.run.start()?;
@@ -46,8 +48,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         let mut sheet = Vec::new();
         write_sheet(&mut sheet, &survey).context("cannot write the sheet")?;
         outputs.push((out, sheet));
+        if let Some(out) = page_out {
+            let way = way(out.path(), results);
+            outputs.push((out, fleet_page(&page(&survey, way.as_deref()))?.into_bytes()));
+        }
     }
-    let _ = page_out;
     pam_cli::publish(outputs, &console)?;
     Ok(verdict)
 }
@@ -65,4 +70,16 @@ fn summarize(survey: &Survey, console: &Console) {
         survey.records.len(),
         survey.standing.len()
     ));
+}
+
+/// The way from the page to the results, as a reference; none where the results do not lie beside or below it, since a page
+/// that is handed on would lead nowhere.
+fn way(page: &std::path::Path, results: &std::path::Path) -> Option<String> {
+    let parent = page.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(std::path::Path::new("."));
+    let (from, to) = (parent.canonicalize().ok()?, results.canonicalize().ok()?);
+    let parts: Option<Vec<&str>> = to.strip_prefix(from).ok()?.iter().map(|part| part.to_str()).collect();
+    // Characters that a reference would have to spell otherwise are rare in folders, and a missing link costs little.
+    let plain = |part: &&str| part.chars().all(|character| character.is_alphanumeric() || "._-".contains(character));
+    let parts = parts.filter(|parts| parts.iter().all(plain))?;
+    Some(parts.iter().map(|part| format!("{part}/")).collect())
 }

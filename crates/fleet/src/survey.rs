@@ -10,7 +10,7 @@ use crate::change::{Change, changes};
 use crate::control::{Chart, charts};
 use crate::groups::{GroupShift, groups};
 use crate::plan::FleetPlan;
-use crate::record::{Record, verdict_word};
+use crate::record::{RESIDUALS, Record, verdict_word};
 
 /// What at least this share of a make has says nothing of one muscle of it.
 const COMMON: f64 = 0.5;
@@ -139,8 +139,15 @@ fn standing(
     common: &[(String, String, usize)],
 ) -> Vec<Standing> {
     let mut reasons: Vec<Vec<Reason>> = records.iter().map(|record| own_reasons(record, common)).collect();
+    // A residual that physics was named for is said by its name.
+    let is_named: Vec<bool> =
+        records.iter().map(|record| record.diagnosed.as_ref().is_some_and(|found| !found.effects.is_empty())).collect();
     for chart in charts {
+        let of_residual = RESIDUALS.contains(&chart.name.as_str());
         for point in chart.points.iter().filter(|point| chart.is_outside(point)) {
+            if of_residual && (is_named[point.record] || point.distance < 0.0) {
+                continue;
+            }
             let side = if point.distance > 0.0 { "high" } else { "low" };
             let words = format!("{} is {side}: {:.1} spreads from the others", chart.name, point.distance.abs());
             reasons[point.record].push(Reason { words, weight: point.distance.abs() / chart.limit });

@@ -5,7 +5,7 @@
 //!
 //! In reading order: [`number`] (how numbers are written), [`Table`], [`plot`] (what figures are made of),
 //! [`fit_figure()`] (the figure of a fit), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
-//! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`signature_figure()`] (what
+//! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`fleet_page()`] (of many muscles), [`signature_figure()`] (what
 //! an effect looks like), [`confusion_figure()`] (what was concealed and what was named).
 
 mod confusion_figure;
@@ -14,9 +14,11 @@ mod envelope_figure;
 mod error;
 mod escape;
 mod fit_figure;
+mod fleet_page;
 mod inverse_figure;
 mod lift_figure;
 pub mod number;
+mod page;
 pub mod plot;
 mod residual_cells;
 mod signature_figure;
@@ -31,6 +33,9 @@ pub use diagnosis_page::{
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;
 pub use fit_figure::{FitFigure, FitRecording, Role, SwarmStart, fit_figure};
+pub use fleet_page::{
+    FleetCampaign, FleetChange, FleetChart, FleetPage, FleetPoint, FleetRefusal, FleetShift, FleetStanding, fleet_page,
+};
 pub use inverse_figure::{InverseCell, InverseFigure, InverseMap, RegionBar, SlopeCell, SlopeMap, inverse_figure};
 pub use lift_figure::{LiftArm, LiftFigure, lift_figure};
 pub use signature_figure::{SignatureFigure, SignaturePanel, SignatureSeries, signature_figure};

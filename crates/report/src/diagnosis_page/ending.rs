@@ -2,13 +2,13 @@
 
 use super::fit_bars::fit_bars;
 use super::headline::share_explained;
-use super::html::{figure, heading, list, newtons, paragraph, percent, table};
 use super::loops::{Stretch, loops};
 use super::place::regions_table;
 use super::samples::Samples;
 use super::{DiagnosisPage, PageAppendix, PageExperiment};
 use crate::escape::escaped;
 use crate::number::engineering;
+use crate::page::html::{figure, heading, list, newtons, paragraph, percent, table};
 use crate::{FigureError, Table};
 
 /// Section: what the effects buy.

@@ -1,9 +1,9 @@
 //! Figure: residuals before and after as bars, with the noise floor across them.
 
 use super::PageFit;
-use super::html::newtons;
-use super::style::{AFTER, BEFORE};
 use crate::FigureError;
+use crate::page::html::newtons;
+use crate::page::style::{AFTER, BEFORE};
 use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, legend, palette};
 
 /// Height of a bar, in pixels.

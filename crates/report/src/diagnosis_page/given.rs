@@ -1,9 +1,9 @@
 //! The model as it was given: what it misses before anything is refitted, and how far a refit moves its parameters.
 
 use super::PageGiven;
-use super::html::{heading, list, newtons, paragraph, table};
 use crate::Table;
 use crate::number::{engineering, significant};
+use crate::page::html::{heading, list, newtons, paragraph, table};
 
 /// Part of the section on the mismatch.
 pub(super) fn given(given: &PageGiven) -> String {

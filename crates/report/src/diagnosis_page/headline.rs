@@ -1,8 +1,8 @@
 //! Top of the page: verdict, statement, the figures that matter.
 
-use super::html::{list, newtons, percent};
 use super::{DiagnosisPage, PageFit, PageVerdict};
 use crate::escape::escaped;
+use crate::page::html::{card, list, newtons, percent};
 
 pub(super) fn headline(page: &DiagnosisPage) -> String {
     let (class, words) = match page.verdict {
@@ -62,12 +62,4 @@ fn card_of_fit(label: &str, fit: PageFit, after: bool) -> String {
         None => "residual, root mean square".to_owned(),
     };
     card(label, &figure, &note)
-}
-
-fn card(label: &str, figure: &str, note: &str) -> String {
-    let (label, figure, note) = (escaped(label), escaped(figure), escaped(note));
-    format!(
-        "<div class=\"card\"><p class=\"label\">{label}</p><p class=\"figure\">{figure}</p>\
-         <p class=\"note\">{note}</p></div>\n"
-    )
 }

@@ -2,8 +2,8 @@
 
 use super::PageCoordinate;
 use super::samples::{Samples, extent};
-use super::style::{AFTER, BEFORE};
 use crate::FigureError;
+use crate::page::style::{AFTER, BEFORE};
 use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, thin};
 
 /// Points of a line.

@@ -20,7 +20,6 @@ mod ending;
 mod fit_bars;
 mod given;
 mod headline;
-mod html;
 mod loops;
 mod named;
 mod place;
@@ -28,7 +27,6 @@ mod profiles;
 mod recording;
 mod residual_maps;
 mod samples;
-mod style;
 mod telling_apart;
 mod time_lines;
 
@@ -41,8 +39,8 @@ pub use coordinate::PageCoordinate;
 pub use recording::PageRecording;
 
 use crate::FigureError;
-use crate::escape::escaped;
-use html::{figure, newtons, paragraph};
+use crate::page::document;
+use crate::page::html::{figure, newtons, paragraph};
 use samples::Samples;
 
 /// Writes the page, as an HTML document.
@@ -65,23 +63,7 @@ pub fn diagnosis_page(page: &DiagnosisPage) -> Result<String, FigureError> {
         }),
         ("appendix", "Appendix: how this came about", ending::appendix(&page.appendix)),
     ];
-    let links: String = sections.iter().map(|(id, title, _)| format!("<a href=\"#{id}\">{title}</a>\n")).collect();
-    let body: String = sections
-        .iter()
-        .enumerate()
-        .map(|(index, (id, title, body))| {
-            let count = index + 1;
-            format!("<section id=\"{id}\">\n<h2><span class=\"count\">{count}</span>{title}</h2>\n{body}</section>\n")
-        })
-        .collect();
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n\
-         <style>\n{}</style>\n</head>\n<body>\n<main>\n{}<nav>\n{links}</nav>\n{body}</main>\n</body>\n</html>\n",
-        escaped(&page.title),
-        style::style(),
-        headline::headline(page),
-    ))
+    Ok(document(&page.title, &headline::headline(page), &sections, "", ""))
 }
 
 /// Section: whether there is a mismatch.

@@ -1,9 +1,9 @@
 //! Section: which effects were left out of the model.
 
-use super::html::{equation, heading, newtons, paragraph, percent, remark, symbols, table};
 use super::{DiagnosisPage, PageAlternative, PageCandidate, PageEffect, PageEvidence, PageParameter, PageVerdict};
 use crate::escape::escaped;
 use crate::number::{engineering, engineering_with_stderr, probability, significant};
+use crate::page::html::{equation, heading, newtons, paragraph, percent, remark, symbols, table};
 use crate::{Table, number};
 
 pub(super) fn named(page: &DiagnosisPage) -> String {

@@ -1,10 +1,10 @@
 //! Section: where model and recordings differ.
 
-use super::html::{figure, heading, paragraph, percent, remark, table};
 use super::samples::Samples;
 use super::{DiagnosisPage, PageRegion};
 use super::{profiles, residual_maps, time_lines};
 use crate::number::probability;
+use crate::page::html::{figure, heading, paragraph, percent, remark, table};
 use crate::{FigureError, Table};
 
 /// Strips of the time line; more would not be looked at.

@@ -1,9 +1,9 @@
 //! Figure: residual against each coordinate, as small multiples of one height.
 
 use super::samples::{Samples, extent};
-use super::style::{AFTER, BEFORE, MARKED, NOISE};
 use super::{PageCoordinate, PageRegion};
 use crate::FigureError;
+use crate::page::style::{AFTER, BEFORE, MARKED, NOISE};
 use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, note, palette};
 use crate::residual_cells::quantile;
 

@@ -1,9 +1,9 @@
 //! Figure: residual over pressure and contraction, before and after, mean and root mean square.
 
 use super::samples::Samples;
-use super::style::{mean_color, size_color};
 use super::{PageCoordinate, PageRegion};
 use crate::FigureError;
+use crate::page::style::{mean_color, size_color};
 use crate::plot::{Anchor, Axis, Canvas, Color, ColorBar, Map, Panel, Rect, palette};
 use crate::residual_cells::{Channel, quantile};
 

@@ -1,10 +1,10 @@
 //! Section: what the recordings could tell apart at all.
 
 use super::PageIsolability;
-use super::html::{figure, list, newtons, paragraph};
-use super::style::size_color;
 use crate::FigureError;
 use crate::number::significant;
+use crate::page::html::{figure, list, newtons, paragraph};
+use crate::page::style::size_color;
 use crate::plot::{Bins, Canvas, ColorBar, Map};
 
 /// Above this the residuals of a pair are alike.

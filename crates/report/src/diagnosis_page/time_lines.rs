@@ -1,9 +1,9 @@
 //! Figure: residual over time, one strip per recording, with the stretches that stand out marked.
 
-use super::html::newtons;
 use super::samples::{Samples, extent};
-use super::style::{AFTER, BEFORE, MARKED, NOISE};
 use crate::FigureError;
+use crate::page::html::newtons;
+use crate::page::style::{AFTER, BEFORE, MARKED, NOISE};
 use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, legend, palette, text_width, thin};
 use crate::residual_cells::quantile;
 

@@ -1,26 +1,26 @@
 //! Pieces of the document.
 
-use super::PageSymbol;
+use crate::PageSymbol;
 use crate::escape::escaped;
 use crate::number::significant;
 
 /// A paragraph.
-pub(super) fn paragraph(text: &str) -> String {
+pub(crate) fn paragraph(text: &str) -> String {
     format!("<p>{}</p>\n", escaped(text))
 }
 
 /// A paragraph in small gray letters.
-pub(super) fn remark(text: &str) -> String {
+pub(crate) fn remark(text: &str) -> String {
     format!("<p class=\"remark\">{}</p>\n", escaped(text))
 }
 
 /// A heading below the section's.
-pub(super) fn heading(text: &str) -> String {
+pub(crate) fn heading(text: &str) -> String {
     format!("<h3>{}</h3>\n", escaped(text))
 }
 
 /// A list with a dot before each entry; nothing for none.
-pub(super) fn list<S: AsRef<str>>(entries: &[S]) -> String {
+pub(crate) fn list<S: AsRef<str>>(entries: &[S]) -> String {
     if entries.is_empty() {
         return String::new();
     }
@@ -29,23 +29,23 @@ pub(super) fn list<S: AsRef<str>>(entries: &[S]) -> String {
 }
 
 /// A figure with what it says written below.
-pub(super) fn figure(svg: &str, caption: &str) -> String {
+pub(crate) fn figure(svg: &str, caption: &str) -> String {
     format!("<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n", escaped(caption))
 }
 
 /// A table that scrolls by itself where the page is narrow.
-pub(super) fn table(table: &crate::Table) -> String {
+pub(crate) fn table(table: &crate::Table) -> String {
     format!("<div class=\"scroll\">\n{}</div>\n", table.to_html())
 }
 
 /// An equation: one line per part, what follows `_` lowered, what follows `^` raised.
-pub(super) fn equation(text: &str) -> String {
+pub(crate) fn equation(text: &str) -> String {
     let lines: Vec<String> = text.split(",  ").map(|line| format!("<span>{}</span>", scripts(line.trim()))).collect();
     format!("<div class=\"equation\">{}</div>\n", lines.join("\n"))
 }
 
 /// Symbols of an equation with unit and meaning, each symbol set as in the equation.
-pub(super) fn symbols(symbols: &[PageSymbol]) -> String {
+pub(crate) fn symbols(symbols: &[PageSymbol]) -> String {
     let rows: String = symbols
         .iter()
         .map(|PageSymbol { symbol, unit, meaning }| {
@@ -89,8 +89,17 @@ fn scripts(text: &str) -> String {
     out
 }
 
+/// A figure that matters, in a frame with what it is.
+pub(crate) fn card(label: &str, figure: &str, note: &str) -> String {
+    let (label, figure, note) = (escaped(label), escaped(figure), escaped(note));
+    format!(
+        "<div class=\"card\"><p class=\"label\">{label}</p><p class=\"figure\">{figure}</p>\
+         <p class=\"note\">{note}</p></div>\n"
+    )
+}
+
 /// A force for people: `2.31 N`, `0.61 N`, `120 N`.
-pub(super) fn newtons(value: f64) -> String {
+pub(crate) fn newtons(value: f64) -> String {
     if !value.is_finite() {
         return significant(value, 3);
     }
@@ -100,7 +109,7 @@ pub(super) fn newtons(value: f64) -> String {
 }
 
 /// A share for people: `38 %`.
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     if !share.is_finite() {
         return "–".to_owned();
     }

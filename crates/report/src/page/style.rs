@@ -10,25 +10,25 @@ use std::fmt::Write as _;
 use crate::plot::{Color, diverging, palette, sequential};
 
 /// Residuals of the base model.
-pub(super) const BEFORE: Color = palette::VERMILION;
+pub(crate) const BEFORE: Color = palette::VERMILION;
 /// Residuals of base model and effects.
-pub(super) const AFTER: Color = palette::BLUE;
+pub(crate) const AFTER: Color = palette::BLUE;
 /// What noise leaves.
-pub(super) const NOISE: Color = palette::SILVER.faded(0.32);
+pub(crate) const NOISE: Color = palette::SILVER.faded(0.32);
 /// Regions.
-pub(super) const MARKED: Color = palette::ORANGE.faded(0.2);
+pub(crate) const MARKED: Color = palette::ORANGE.faded(0.2);
 
 /// Steps of a color map on each side of its middle.
 const STEPS: i32 = 12;
 const STYLE: &str = include_str!("style.css");
 
 /// Color for a mean residual, −1 to 1 for a share from 0 to 1.
-pub(super) fn mean_color(share: f64) -> Color {
+pub(crate) fn mean_color(share: f64) -> Color {
     mean_at(step(2.0 * share - 1.0))
 }
 
 /// Color for a size, 0 to 1.
-pub(super) fn size_color(share: f64) -> Color {
+pub(crate) fn size_color(share: f64) -> Color {
     size_at(step(share.max(0.0)))
 }
 
@@ -46,7 +46,7 @@ fn step(value: f64) -> f64 {
 }
 
 /// The whole style sheet.
-pub(super) fn style() -> String {
+pub(crate) fn style() -> String {
     let mut style = STYLE.to_owned();
     style.push_str("@media screen and (prefers-color-scheme: dark) {\n");
     let mut replace = |light: Color, dark: Color| {
