@@ -71,15 +71,14 @@ fn drawn(page: &FleetPage, chart: &FleetChart) -> Result<String, FigureError> {
         }
         rigs(page, &points, &panel, canvas);
         let radius = if points.len() > 300 { 1.6 } else { 2.6 };
-        let clamped = |value: f64| value.clamp(panel.y.from, panel.y.to);
         for (place, point) in points.iter().enumerate() {
             let color = if point.outside { BEFORE } else { AFTER };
             if let Some(stderr) = point.stderr.filter(|_| points.len() <= WITH_ERRORS) {
                 let ends = [point.value - stderr, point.value + stderr];
-                panel.line(canvas, ends.map(|value| (place as f64, clamped(value))), color, 1.0);
+                canvas.line(ends.map(|value| spot(&panel, place, value)), color, 1.0);
             }
             let radius = if point.outside { 1.6 * radius } else { radius };
-            canvas.dot(panel.at(place as f64, clamped(point.value)), radius, color);
+            canvas.dot(spot(&panel, place, point.value), radius, color);
         }
         names(page, &points, &panel, canvas);
     })
@@ -110,10 +109,14 @@ fn names(page: &FleetPage, points: &[&FleetPoint], panel: &Panel, canvas: &mut C
     let mut outside: Vec<(usize, &FleetPoint)> =
         points.iter().enumerate().filter(|(_, point)| point.outside).map(|(place, point)| (place, *point)).collect();
     outside.sort_by(|a, b| b.1.distance.abs().total_cmp(&a.1.distance.abs()));
-    let mut taken: Vec<Rect> = Vec::new();
+    // A name covers no dot outside the limits, be it its own or another.
+    let dots = outside.iter().map(|(place, point)| spot(panel, *place, point.value));
+    let mut taken: Vec<Rect> =
+        dots.map(|(x, y)| Rect { left: x - 3.0, top: y - 3.0, right: x + 3.0, bottom: y + 3.0 }).collect();
+    let most = taken.len() + NAMED;
     for (place, point) in outside {
         let name = &page.campaigns[point.campaign].muscle;
-        let (x, y) = panel.at(place as f64, point.value.clamp(panel.y.from, panel.y.to));
+        let (x, y) = spot(panel, place, point.value);
         let width = text_width(name, 10.5);
         // Beside the dot, on the side where the frame has room.
         let right = x + 8.0 + width < panel.frame.right;
@@ -122,11 +125,18 @@ fn names(page: &FleetPage, points: &[&FleetPoint], panel: &Panel, canvas: &mut C
         let free = taken.iter().all(|other| {
             rect.left > other.right || rect.right < other.left || rect.top > other.bottom || rect.bottom < other.top
         });
-        if free && taken.len() < NAMED {
+        if free && taken.len() < most {
             canvas.text(name, (left, y), Anchor::Start, 10.5, palette::INK);
             taken.push(rect);
         }
     }
+}
+
+/// Where a value stands on the panel: one beyond its ends a little before them.
+fn spot(panel: &Panel, place: usize, value: f64) -> (f64, f64) {
+    const EDGE: f64 = 6.0;
+    let (x, y) = panel.at(place as f64, value);
+    (x, y.clamp(panel.frame.top + EDGE, panel.frame.bottom - EDGE))
 }
 
 /// What the vertical axis covers: the limits and most values; one far outside stands at the edge.
@@ -135,9 +145,13 @@ fn extent(chart: &FleetChart) -> (f64, f64) {
     let values = || chart.points.iter().map(|point| scaled(point.value)).filter(|value| value.is_finite());
     let (mut low, mut high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     if let Some([lower, center, upper]) = chart.limits.map(|limits| limits.map(scaled)) {
-        // The band takes a third of the height at least.
-        low = low.clamp(center - 3.0 * (center - lower), lower);
-        high = high.clamp(upper, center + 3.0 * (upper - center));
+        // The band takes a third of the height at least, and no more of it is shown than values need.
+        let room = 0.3 * (high - low);
+        low = if low > lower { lower.max(low - room) } else { low.max(center - 3.0 * (center - lower)) };
+        high = if high < upper { upper.min(high + room) } else { high.min(center + 3.0 * (upper - center)) };
     }
+    // Dots at an edge, and names beside them, keep off the frame.
+    let margin = 0.06 * (high - low);
+    (low, high) = (low - margin, high + margin);
     if chart.logarithmic { (low.exp(), high.exp()) } else { (low, high) }
 }

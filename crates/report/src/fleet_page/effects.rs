@@ -29,9 +29,9 @@ pub(super) fn effects(page: &FleetPage) -> String {
         .map(|(id, n)| format!("<th class=\"upward\"><span>{} <i>{n}</i></span></th>", escaped(id)))
         .collect();
     let mut html = paragraph(&format!(
-        "Effects of the catalogue that a diagnosis named, in {} of {diagnosed} diagnosed. A cell holds the force that the effect \
+        "Effects of the catalogue that a diagnosis named, in {} of {diagnosed} diagnosed campaigns. A cell holds the force that the effect \
          explains on recordings it was not fitted to, root mean square in N; its shade is that force over the sensors' noise.",
-        counted(with.len(), "campaign")
+        with.len()
     ));
     html.push_str(&format!(
         "<div class=\"scroll tall\">\n<table class=\"sortable matrix\">\n<thead><tr><th>muscle</th><th>rig</th><th>date</th>{heads}\
@@ -56,7 +56,7 @@ pub(super) fn effects(page: &FleetPage) -> String {
         ));
     }
     html.push_str("</tbody>\n</table>\n</div>\n");
-    html + &remark("Behind the name of an effect stands in how many campaigns it was named.")
+    html + &remark("After the name of an effect stands the number of campaigns that it was named in.")
 }
 
 /// Shade of a force over the noise, from 1 to 5.
