@@ -14,6 +14,8 @@ use crate::record::{RESIDUALS, Record, verdict_word};
 
 /// What at least this share of a make has says nothing of one muscle of it.
 const COMMON: f64 = 0.5;
+/// Residuals that are at most this often the sensors' noise are explained, as a diagnosis takes it: no reason to stand out.
+const MUCH: f64 = 1.5;
 /// Fewest muscles of a make of which anything is common.
 const FEWEST: usize = 5;
 /// Campaigns read at a time: what a machine's threads work on, and all of its artifacts that are ever in memory at once.
@@ -145,7 +147,7 @@ fn standing(
     for chart in charts {
         let of_residual = RESIDUALS.contains(&chart.name.as_str());
         for point in chart.points.iter().filter(|point| chart.is_outside(point)) {
-            if of_residual && (is_named[point.record] || point.distance < 0.0) {
+            if of_residual && (is_named[point.record] || point.value < MUCH) {
                 continue;
             }
             let side = if point.distance > 0.0 { "high" } else { "low" };
