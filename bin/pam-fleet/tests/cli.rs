@@ -94,8 +94,7 @@ fn a_muscle_that_is_not_like_the_others_is_named_first() {
     let output = fleet.run(REPORT);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let sheet = fleet.read("fleet.csv");
-    let standing: Vec<usize> =
-        (0..MUSCLES).filter(|index| column(&sheet, "stands_out")[*index] == "yes").collect();
+    let standing: Vec<usize> = (0..MUSCLES).filter(|index| column(&sheet, "stands_out")[*index] == "yes").collect();
     assert_eq!(standing, [4], "{sheet}");
     let page = fleet.read("fleet.html");
     assert!(page.contains("One muscle is not like the others") && page.contains("First of all m04: k1 is high"));
