@@ -158,7 +158,10 @@ mod tests {
         // Muscles differ by far more than the rigs do; each is on both rigs.
         let mut records = fleet(40, |index| {
             let muscle = index / 2;
-            (muscle * muscle % 97) as f64 + if index % 2 == 0 { 0.1 } else { 0.0 } + 0.001 * ((index * 7) % 11) as f64
+            200.0
+                + (muscle * muscle % 97) as f64
+                + if index % 2 == 0 { 0.1 } else { 0.0 }
+                + 0.001 * ((index * 7) % 11) as f64
         });
         for (index, record) in records.iter_mut().enumerate() {
             record.campaign.muscle = format!("m{}", index / 2);
