@@ -89,8 +89,8 @@ mod tests {
     fn a_muscle_that_changed_is_found_and_no_other() {
         let mut records = fleet(60, |index| {
             let (muscle, later) = (index / 2, index % 2);
-            10.0 + muscle as f64
-                + 0.02 * ((index * 37) % 11) as f64
+            40.0 + muscle as f64
+                + 0.02 * ((index * index * 37) % 11) as f64
                 + if (muscle, later) == (12, 1) { 3.0 } else { 0.0 }
         });
         for (index, record) in records.iter_mut().enumerate() {
