@@ -10,9 +10,9 @@ BIN = $(eval BIN := $(shell $(CARGO) metadata --no-deps --offline --format-versi
 # Where `make install` puts programs, manual pages and completions.
 PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
-PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench pam-export
+PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench pam-export pam-fleet
 
-.PHONY: all install test check bench compare tables tutorial hard-use odd-inputs mutate fuzz datasets recordings prove prove-worlds prove-real clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial hard-use odd-inputs mutate fuzz datasets recordings prove prove-worlds prove-real fleet-slurm clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -124,6 +124,12 @@ prove-worlds: cargo-is-there
 prove-real: cargo-is-there
 	@$(CARGO) build --release --locked --workspace --bins
 	$(BIN)/prove-real $(if $(PAM_RECORDINGS),--recordings $(PAM_RECORDINGS)) --record scripts/proof
+
+# The workflow of a fleet on a Slurm of two nodes on this machine, where the distribution's packages are installed; needs a
+# network the first time.
+fleet-slurm: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/fleet/test-slurm --bin $(BIN)
 
 clean:
 	@rm -rf $(OUT)

@@ -5,7 +5,7 @@
 //!
 //! In reading order: [`number`] (how numbers are written), [`Table`], [`text`] (what fits a terminal), [`plot`] (what figures are made of),
 //! [`fit_figure()`] (the figure of a fit), [`prediction_figure()`] (of a prediction), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
-//! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`signature_figure()`] (what
+//! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`fleet_page()`] (of many muscles), [`signature_figure()`] (what
 //! an effect looks like), [`confusion_figure()`] (what was concealed and what was named).
 
 mod confusion_figure;
@@ -14,6 +14,7 @@ mod envelope_figure;
 mod error;
 mod escape;
 mod fit_figure;
+mod fleet_page;
 mod inverse_figure;
 mod lift_figure;
 pub mod number;
@@ -36,6 +37,9 @@ pub use diagnosis_page::{
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;
 pub use fit_figure::{FitFigure, FitRecording, Role, SwarmStart, fit_figure};
+pub use fleet_page::{
+    FleetCampaign, FleetChange, FleetChart, FleetPage, FleetPoint, FleetRefusal, FleetShift, FleetStanding, fleet_page,
+};
 pub use inverse_figure::{InverseCell, InverseFigure, InverseMap, RegionBar, SlopeCell, SlopeMap, inverse_figure};
 pub use lift_figure::{LiftArm, LiftFigure, lift_figure};
 pub use picture::PictureFormat;

@@ -1,0 +1,9 @@
+//! Many muscles beside one another: which of them, which rig and which date differs.
+
+mod args;
+mod page;
+mod run;
+
+fn main() -> std::process::ExitCode {
+    pam_cli::main_with_schema::<args::Args, pam_fleet_survey::plan::FleetPlan>(run::run)
+}
