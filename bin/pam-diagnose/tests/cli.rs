@@ -39,7 +39,7 @@ struct Desk {
 impl Desk {
     fn with(concealed: &[Concealed]) -> Self {
         let desk = Self { folder: tempfile::tempdir().unwrap() };
-        let MuscleFile { name: None, muscle, strand_modulus_pa, .. } = muscle_file();
+        let MuscleFile { muscle, strand_modulus_pa, .. } = muscle_file();
         let truth = TrueMuscle::new(muscle, strand_modulus_pa, Parameters::nominal());
         let options = Options { duration_scale: 0.2, ..Options::default() };
         for (seed, protocol) in FITTED.into_iter().chain(["multisine"]).enumerate() {

@@ -397,6 +397,7 @@ fn where_the_model_extrapolates_is_a_share_of_the_samples() {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "a skipped test must be seen")]
 fn a_figure_is_what_its_ending_says() {
     let bench = Bench::new();
     let begins = |name: &str, bytes: &[u8]| {
