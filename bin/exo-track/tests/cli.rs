@@ -386,11 +386,12 @@ fn an_inverse_of_another_model_is_refused_with_the_remedy() {
 }
 
 /// The model with an effect of one parameter.
-fn with_effect(folder: &Path, id: &str, name: &str, value: f64, unit: &str) {
+fn with_effect(folder: &Path, id: &str, parameters: &[(&str, f64, &str)]) {
     let text = std::fs::read_to_string(MODEL).unwrap();
     let mut model: serde_json::Value = serde_json::from_str(&text).unwrap();
-    let parameter = serde_json::json!({"name": name, "value": value, "unit": unit, "stderr": null, "status": "fitted"});
-    model["effects"] = serde_json::json!([{"id": id, "parameters": [parameter]}]);
+    let entry = |&(name, value, unit): &(&str, f64, &str)| serde_json::json!({"name": name, "value": value, "unit": unit, "stderr": null, "status": "fitted"});
+    let parameters: Vec<serde_json::Value> = parameters.iter().map(entry).collect();
+    model["effects"] = serde_json::json!([{"id": id, "parameters": parameters}]);
     std::fs::write(folder.join("effect.json"), model.to_string()).unwrap();
 }
 
@@ -407,7 +408,7 @@ fn mae_rad(folder: &Path, more: &[&str]) -> f64 {
 fn a_concealed_threshold_costs_tracking_and_a_model_that_knows_it_gets_it_back() {
     let folder = folder(&[]);
     let base_rad = mae_rad(folder.path(), &[]);
-    with_effect(folder.path(), "threshold-pressure", "threshold_pa", 4e4, "Pa");
+    with_effect(folder.path(), "threshold-pressure", &[("threshold_pa", 4e4, "Pa")]);
     let concealed_rad = mae_rad(folder.path(), &["--plant", "effect.json"]);
     let output = Command::new(env!("CARGO_BIN_EXE_exo-track"))
         .current_dir(folder.path())
@@ -425,7 +426,11 @@ fn a_concealed_threshold_costs_tracking_and_a_model_that_knows_it_gets_it_back()
 fn an_effect_that_is_not_the_muscle_s_stays_at_the_bench() {
     let folder = folder(&[]);
     let base_rad = mae_rad(folder.path(), &[]);
-    with_effect(folder.path(), "series-compliance", "compliance_m_per_n", 1e-6, "m/N");
+    with_effect(
+        folder.path(),
+        "series-compliance",
+        &[("compliance_m_per_n", 1e-6, "m/N"), ("sliding_share", 1.0, "1")],
+    );
     assert_eq!(mae_rad(folder.path(), &["--plant", "effect.json"]).to_bits(), base_rad.to_bits());
     let output = run(folder.path(), &["--out", "track.csv", "--plant", "effect.json"]);
     let text = String::from_utf8(output.stderr).unwrap();
@@ -438,7 +443,7 @@ fn an_effect_that_is_not_the_muscle_s_stays_at_the_bench() {
 #[test]
 fn an_effect_that_the_catalogue_does_not_have_is_refused() {
     let folder = folder(&[]);
-    with_effect(folder.path(), "gearbox", "ratio", 2.0, "1");
+    with_effect(folder.path(), "gearbox", &[("ratio", 2.0, "1")]);
     let output = run(folder.path(), &["--out", "track.csv", "--plant", "effect.json"]);
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{text}");

@@ -8,7 +8,8 @@ use pam_cli::{ReadArgs, RunArgs};
 /// Predict the force of a pneumatic muscle from its model.
 ///
 /// Writes the recording with two more columns: force_model_N, and residual_N where a force was recorded
-/// (measured less modelled).
+/// (measured less modelled). Until the muscle first moves nothing tells which way its friction acts: there it is taken from
+/// the recorded force, where there is one.
 #[derive(Debug, Parser)]
 #[command(
     version,

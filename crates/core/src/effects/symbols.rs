@@ -3,7 +3,7 @@
 use crate::force::Parameter;
 
 /// Parameters of effects: id, name in artifacts, symbol.
-const OF_EFFECTS: [(&str, &str, &str); 49] = [
+const OF_EFFECTS: [(&str, &str, &str); 50] = [
     ("braid-lockup", "lock_contraction", "ε_l"),
     ("braid-lockup", "onset_contraction", "w"),
     ("braid-lockup", "stiffness_n", "K"),
@@ -39,6 +39,7 @@ const OF_EFFECTS: [(&str, &str, &str); 49] = [
     ("rubber-hysteresis", "slip_distance_m", "δ"),
     ("rubber-hysteresis", "width_n", "W"),
     ("series-compliance", "compliance_m_per_n", "c"),
+    ("series-compliance", "sliding_share", "s"),
     ("slack", "floor_n", "F_floor"),
     ("slack", "softness_n", "w"),
     ("stribeck", "stribeck_speed_m_per_s", "v_s"),

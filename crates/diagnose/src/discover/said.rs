@@ -86,7 +86,11 @@ fn place(sentence: &Sentence, curve: &EmpiricalCurve) -> String {
     let of = remembered(sentence);
     let show = |value: f64| quantity(value, &curve.unit, &sentence.driver);
     if let Some((from, to)) = acts_within(curve) {
-        return format!("acts only where {of} is between {} and {}", show(from), show(to));
+        let (from, to) = (show(from), show(to));
+        // A unit is said once.
+        let unit = to.rsplit_once(' ').map(|(_, unit)| unit);
+        let from = unit.and_then(|unit| from.strip_suffix(unit)).map_or(&*from, str::trim_end);
+        return format!("acts only where {of} is between {from} and {to}");
     }
     if sentence.shape == Curve::Line {
         return format!("is proportional to {of}");
