@@ -13,7 +13,7 @@
 //! | `w`  | [`Sentence::seen`] | 1 where `m(d)` was seen, falling to 0 over a tenth of that range beyond it   |
 //!
 //! `f` is linear in its amplitudes, which a model carries as parameters; everything else is fixed in the sentence. Any
-//! language evaluates it from the formulas in these four files and the [`Moment`](super::Moment).
+//! language evaluates it from the formulas in these four files and the [`Moment`].
 
 mod curve;
 mod driver;
