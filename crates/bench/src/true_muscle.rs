@@ -62,14 +62,7 @@ impl TrueMuscle {
     /// The self-made muscle that the rest of the toolchain uses as its example: 267 mm long, 10 mm radius, braid at
     /// 25°, 1 mm of latex, 240 nylon strands of 0.25 mm.
     pub fn nominal() -> Self {
-        let muscle = Muscle {
-            rest_length_m: 0.267,
-            rest_radius_m: 0.010,
-            braid_angle_rad: 25.0_f64.to_radians(),
-            wall_thickness_m: 0.001,
-            strand_count: 240.0,
-            strand_diameter_m: 0.25e-3,
-        };
+        let muscle = Muscle::nominal();
         Self::new(muscle, NYLON_MODULUS_PA, Parameters::nominal())
     }
 

@@ -52,6 +52,19 @@ pub struct Muscle {
 }
 
 impl Muscle {
+    /// The self-made McKibben muscle of `configs/muscle-nominal.toml`, the example of the whole toolchain: 267 mm long, 10 mm of
+    /// radius, a braid at 25°, 1 mm of latex, 240 nylon strands of 0.25 mm.
+    pub fn nominal() -> Self {
+        Self {
+            rest_length_m: 0.267,
+            rest_radius_m: 0.010,
+            braid_angle_rad: 25.0_f64.to_radians(),
+            wall_thickness_m: 0.001,
+            strand_count: 240.0,
+            strand_diameter_m: 0.25e-3,
+        }
+    }
+
     /// `b_s`, in m.
     pub fn strand_length_m(&self) -> f64 {
         self.rest_length_m / self.braid_angle_rad.cos()
@@ -370,16 +383,9 @@ impl MuscleFile {
 pub(crate) mod tests {
     use super::*;
 
-    /// The nominal self-made McKibben muscle of 267 mm that every physics test here uses.
+    /// The muscle that every physics test here uses.
     pub(crate) fn nominal() -> Muscle {
-        Muscle {
-            rest_length_m: 0.267,
-            rest_radius_m: 0.010,
-            braid_angle_rad: 25.0_f64.to_radians(),
-            wall_thickness_m: 0.001,
-            strand_count: 240.0,
-            strand_diameter_m: 0.25e-3,
-        }
+        Muscle::nominal()
     }
 
     #[test]

@@ -185,10 +185,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     }
     let question = Question::new(&estimation, &model, limits);
     let Answer { track, mut found, knocks, mut sizes } = answer;
-    let held = match holdout.is_empty() {
-        true => None,
-        false => Some(Track::of(&holdout, model.direction, &model.force_model())?),
-    };
+    let held = (!holdout.is_empty()).then(|| Track::of(&holdout, model.direction, &model.force_model())).transpose()?;
     if let Some(held) = held.as_ref().filter(|_| knocks.is_none()) {
         found = veto::confirmed(&question, &track, found, held);
         sizes = Sizes::of(&found, &question.limits);
@@ -196,13 +193,10 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
     let nuisance = found.nuisance.clone();
     let setting = question.setting(&track, &nuisance);
-    if knocks.is_none() {
-        let left_over = || {
-            let places = structured(&setting, &found.best.state, &found, &paths);
-            telling(places, &[]).first().map(|region| region.coordinate)
-        };
-        let left_over = if verdict(&found, &sizes, false) == Verdict::Unexplained { left_over() } else { None };
-        sizes = stand_ins::let_go(&setting, &mut found, sizes, &question.limits, left_over);
+    if knocks.is_none() && verdict(&found, &sizes, false) == Verdict::Unexplained {
+        let places = structured(&setting, &found.best.state, &found, &paths);
+        let left_over = telling(places, &[]).first().map(|region| region.coordinate);
+        sizes = stand_ins::let_go(&setting, &mut found, &sizes, &question.limits, left_over);
     }
     given.beside_effects(&question, &track, &found);
     let space = &question.space;

@@ -47,14 +47,7 @@ const SIZE_N: f64 = 10.0;
 
 /// The muscle of `configs/muscle-nominal.toml`, and the modulus of its strands in Pa.
 pub fn nominal() -> (Muscle, f64) {
-    let muscle = Muscle {
-        rest_length_m: 0.267,
-        rest_radius_m: 0.010,
-        braid_angle_rad: 25.0_f64.to_radians(),
-        wall_thickness_m: 1e-3,
-        strand_count: 240.0,
-        strand_diameter_m: 0.25e-3,
-    };
+    let muscle = Muscle::nominal();
     (muscle, 3e9)
 }
 

@@ -232,14 +232,7 @@ pub(crate) mod tests {
     impl Given {
         /// Of the protocols, with effects (id, shape, amplitudes).
         pub(crate) fn of(names: &[&str], effects: &[(&'static str, &[f64], &[f64])]) -> Self {
-            let muscle = Muscle {
-                rest_length_m: 0.267,
-                rest_radius_m: 0.010,
-                braid_angle_rad: 25.0_f64.to_radians(),
-                wall_thickness_m: 0.001,
-                strand_count: 240.0,
-                strand_diameter_m: 0.25e-3,
-            };
+            let muscle = Muscle::nominal();
             let c10_pa = 220e3 / (1.0 + LATEX_RATIO);
             let parameters =
                 BaseParameters { theta: [0.9, 1.05, 2.0, c10_pa, c10_pa * LATEX_RATIO, 1.0 / 3e9, 1.2e-3, 0.0] };

@@ -10,6 +10,7 @@ use crate::hypothesis::Guess;
 use crate::joint::HeldOut;
 use crate::nuisance::Nuisance;
 use crate::plausible::strains;
+use crate::stand_ins;
 use crate::state::{Setting, State};
 use crate::structure::{Feature, Remainder, Structure, features, telling_force_n};
 use crate::trial::{self, Shapes, Trial};
@@ -192,7 +193,7 @@ pub fn search(
     }
     let mismatch = whole.held_out.mean_square() - floor_square;
     if parsimonious.is_empty() {
-        best = without_stand_ins(mapped, best, &features, mismatch, limits.confirmed);
+        best = stand_ins::without(mapped, best, &features, mismatch, limits.confirmed);
     }
     let best = at_rest(mapped, polished(mapped, best)?)?;
     let mut taken = Vec::new();
@@ -570,54 +571,6 @@ fn refine_all(setting: &Setting<'_>, state: State) -> Option<State> {
         state = setting.fit_near(guesses, &state)?;
     }
     Some(state)
-}
-
-/// Share of the whole mismatch that structure over one coordinate must hold before it is asked what stands in for it.
-const STRUCTURED: f64 = 0.2;
-/// Share of its gain that an effect must keep beside such structure.
-const KEPT: f64 = 0.4;
-/// Share of the whole mismatch beyond which an effect does not only stand in for something else.
-const STANDS_FOR_ITSELF: f64 = 0.5;
-
-/// Lets go of effects that only stand in for something without a name: where structure over one coordinate is left, an effect
-/// that gains less than that structure holds, or little beside a free function of that coordinate, was the nearest name, and
-/// the wrong one.
-fn without_stand_ins(setting: &Setting<'_>, best: Judged, features: &[Feature], whole: f64, confirmed: bool) -> Judged {
-    let mut best = best;
-    loop {
-        let remainder = Remainder::of(setting, &best.state);
-        let Some(nothing) = remainder.structure(&[]) else { return best };
-        let telling = features
-            .iter()
-            .filter(|feature| !feature.plane)
-            .filter_map(|feature| Some((remainder.structure(&[feature])?.held_out.mean_square(), feature)))
-            .min_by(|left, right| left.0.total_cmp(&right.0));
-        let Some((beside, feature)) = telling else { return best };
-        let structure = nothing.held_out.mean_square() - beside;
-        if structure < STRUCTURED * whole {
-            return best;
-        }
-        let stand_in = (0..best.state.guesses.len()).find_map(|index| {
-            let effect = best.state.guesses[index].effect;
-            // Held-out recordings say it better.
-            if confirmed && !effect.is_static() && effect.kind() != Kind::Event {
-                return None;
-            }
-            let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
-            let gained = rest.held_out.mean_square() - best.held_out.mean_square();
-            let without = Remainder::of(setting, &rest.state).structure(&[feature])?.held_out.mean_square();
-            // What explains most of it stands for itself. What explains less than is left there does not, nor what a function
-            // of that coordinate replaces, unless that is where the effect lives.
-            let lives_there = best.state.guesses[index].effect.page().coordinate == feature.coordinate;
-            let replaced = !lives_there && without - beside < KEPT * gained;
-            let misshapen = lives_there && !feature.odd && best.state.guesses[index].effect.is_static();
-            (misshapen || gained < STANDS_FOR_ITSELF * whole && (gained < structure || replaced)).then_some(rest)
-        });
-        match stand_in {
-            Some(rest) => best = rest,
-            None => return best,
-        }
-    }
 }
 
 /// `best` without effect `index`, and what else could stand in its place.

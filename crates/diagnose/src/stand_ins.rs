@@ -1,24 +1,78 @@
 //! What was named though something without a name lies behind it: the nearest name in the catalogue, and the wrong one.
 
-use pam_core::artifact::diagnosis::{Coordinate, Verdict};
+use pam_core::artifact::diagnosis::Coordinate;
+use pam_core::effects::Kind;
 
 use crate::hypothesis::Guess;
-use crate::search::{Found, Limits};
+use crate::search::{Found, Judged, Limits, judged};
 use crate::state::Setting;
-use crate::verdict::{Sizes, verdict};
+use crate::structure::{Feature, Remainder};
+use crate::verdict::Sizes;
 
-/// Lets go of every effect that leaves far more than it explains, and of every local static one beside which structure is left
-/// over the very coordinate that it acts on, which `left_over` is: a static force of another shape. What remains of the sizes.
+/// Share of the whole mismatch that structure over one coordinate must hold before it is asked what stands in for it.
+const STRUCTURED: f64 = 0.2;
+/// Share of its gain that an effect must keep beside such structure.
+const KEPT: f64 = 0.4;
+/// Share of the whole mismatch beyond which an effect does not only stand in for something else.
+const STANDS_FOR_ITSELF: f64 = 0.5;
+
+/// `best` of a search without the effects that only stand in for something without a name: where structure over one coordinate
+/// is left, an effect that gains less than that structure holds, or little beside a free function of that coordinate, was the
+/// nearest name, and the wrong one.
+pub(crate) fn without(
+    setting: &Setting<'_>,
+    best: Judged,
+    features: &[Feature],
+    whole: f64,
+    confirmed: bool,
+) -> Judged {
+    let mut best = best;
+    loop {
+        let remainder = Remainder::of(setting, &best.state);
+        let Some(nothing) = remainder.structure(&[]) else { return best };
+        let telling = features
+            .iter()
+            .filter(|feature| !feature.plane)
+            .filter_map(|feature| Some((remainder.structure(&[feature])?.held_out.mean_square(), feature)))
+            .min_by(|left, right| left.0.total_cmp(&right.0));
+        let Some((beside, feature)) = telling else { return best };
+        let structure = nothing.held_out.mean_square() - beside;
+        if structure < STRUCTURED * whole {
+            return best;
+        }
+        let stand_in = (0..best.state.guesses.len()).find_map(|index| {
+            let effect = best.state.guesses[index].effect;
+            // Held-out recordings say it better.
+            if confirmed && !effect.is_static() && effect.kind() != Kind::Event {
+                return None;
+            }
+            let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
+            let gained = rest.held_out.mean_square() - best.held_out.mean_square();
+            let without = Remainder::of(setting, &rest.state).structure(&[feature])?.held_out.mean_square();
+            // What explains most of it stands for itself. What explains less than is left there does not, nor what a function
+            // of that coordinate replaces, unless that is where the effect lives.
+            let lives_there = best.state.guesses[index].effect.page().coordinate == feature.coordinate;
+            let replaced = !lives_there && without - beside < KEPT * gained;
+            let misshapen = lives_there && !feature.odd && best.state.guesses[index].effect.is_static();
+            (misshapen || gained < STANDS_FOR_ITSELF * whole && (gained < structure || replaced)).then_some(rest)
+        });
+        match stand_in {
+            Some(rest) => best = rest,
+            None => return best,
+        }
+    }
+}
+
+/// Lets go of every effect of `found`, whose verdict is `unexplained`, that leaves far more than it explains, and of every local
+/// static one beside which structure is left over the very coordinate that it acts on, which `left_over` is: a static force of
+/// another shape. What remains of the sizes.
 pub(crate) fn let_go(
     setting: &Setting<'_>,
     found: &mut Found,
-    sizes: Sizes,
+    sizes: &Sizes,
     limits: &Limits,
     left_over: Option<Coordinate>,
 ) -> Sizes {
-    if verdict(found, &sizes, false) != Verdict::Unexplained {
-        return sizes;
-    }
     let stands_in = |guess: &Guess| {
         let effect = guess.effect;
         let misshapen = effect.is_static() && effect.is_local() && left_over == Some(effect.page().coordinate);
@@ -38,8 +92,7 @@ pub(crate) fn let_go(
 mod tests {
     use super::*;
     use crate::rehearsal::tests::Given;
-    use crate::search::{judged, search};
-    use crate::structure::{Feature, Remainder};
+    use crate::search::search;
 
     /// Names that are left of `guess` in `given`, where structure is left over `left_over`.
     fn names(given: &Given, guess: Guess, left_over: Coordinate) -> Vec<&'static str> {
@@ -59,7 +112,7 @@ mod tests {
         let every: Vec<&Feature> = found.features.iter().collect();
         found.left = Remainder::of(&setting, &found.best.state).structure(&every);
         let sizes = Sizes::of(&found, &limits);
-        let_go(&setting, &mut found, sizes, &limits, Some(left_over));
+        let_go(&setting, &mut found, &sizes, &limits, Some(left_over));
         found.best.state.guesses.iter().map(Guess::id).collect()
     }
 

@@ -6,14 +6,7 @@ use pam_core::muscle::Muscle;
 
 /// The nominal self-made McKibben muscle of 267 mm.
 pub(crate) fn nominal_muscle() -> Muscle {
-    Muscle {
-        rest_length_m: 0.267,
-        rest_radius_m: 0.010,
-        braid_angle_rad: 25.0_f64.to_radians(),
-        wall_thickness_m: 0.001,
-        strand_count: 240.0,
-        strand_diameter_m: 0.25e-3,
-    }
+    Muscle::nominal()
 }
 
 /// Its force model.

@@ -1,4 +1,4 @@
-//! Which law the friction of a muscle follows while its length stands still, judged by its recordings.
+//! Which law the friction of a muscle follows while its length stands still, and behind a reversal, judged by its recordings.
 //!
 //! Every law gives the same columns of eq. 11 other signs of friction where the length rests and the pressure moves. The law
 //! that leaves least of the force, with weights free of bounds so that no start of a search matters, is taken; samples

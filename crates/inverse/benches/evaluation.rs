@@ -16,14 +16,7 @@ fn main() {
 }
 
 fn exact() -> ExactInverse {
-    let muscle = Muscle {
-        rest_length_m: 0.267,
-        rest_radius_m: 0.010,
-        braid_angle_rad: 25.0_f64.to_radians(),
-        wall_thickness_m: 0.001,
-        strand_count: 240.0,
-        strand_diameter_m: 0.25e-3,
-    };
+    let muscle = Muscle::nominal();
     let theta = [0.9, 1.05, 2.0, 118.4e3, 105.7e3, 1.0 / 3e9, 1.2e-3, 0.0];
     let model = ForceModel::new(&muscle, 3e9, Form::Corrected, BaseParameters { theta });
     let inverse_box = InverseBox { pressure_pa: [500.0, 5e5], length_m: [0.211, 0.268], force_n: [4.5, 1119.0] };

@@ -225,14 +225,7 @@ pub(crate) mod tests {
     use pam_core::muscle::Muscle;
 
     fn muscle() -> Muscle {
-        Muscle {
-            rest_length_m: 0.267,
-            rest_radius_m: 0.010,
-            braid_angle_rad: 25.0_f64.to_radians(),
-            wall_thickness_m: 0.001,
-            strand_count: 240.0,
-            strand_diameter_m: 0.25e-3,
-        }
+        Muscle::nominal()
     }
 
     fn model(theta: [f64; 8]) -> ForceModel {

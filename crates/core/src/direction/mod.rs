@@ -37,7 +37,8 @@ mod turn;
 
 use states::{Bounds, State, moving_average, slide, states_of};
 
-pub use states::{STANDSTILL_S, WINDOW_S};
+pub use rest::STANDSTILL_S;
+pub use states::WINDOW_S;
 
 /// Rows that are worked on at a time; memory across a border between two is a state and an extreme.
 const STRETCH_ROWS: usize = 1 << 18;

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::states::STANDSTILL_S;
+/// How long the length must stand still before pressure takes its place, in s.
+pub const STANDSTILL_S: f64 = 1.0;
 
 /// A shorter rest, in s, and how much less the length moves in it: so that neither is a crawl.
 const SHORT_S: f64 = 0.4;

@@ -10,8 +10,6 @@ use crate::smoothing::Window;
 
 /// Length of the moving average, in s; at least five samples and at most 101 are averaged.
 pub const WINDOW_S: f64 = 0.05;
-/// How long the length must stand still before pressure takes its place, in s.
-pub const STANDSTILL_S: f64 = 1.0;
 
 /// Between what the state of friction must lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,23 +86,13 @@ pub(super) fn states_of(
     if let Standstill::Slides { over_pa } = thresholds.standstill
         && over_pa <= 2.0 * thresholds.pressure_pa
     {
-        let rest_of = |pushed: &Range<usize>| {
-            let still = resting.iter().find(|still| still.contains(&pushed.start));
-            still.map_or(0, |still| still.end - pushed.end)
-        };
-        // A standstill in which the pressure rests as well keeps what the length says.
         for still in &pushed {
+            let rest = resting.iter().find(|rest| rest.contains(&still.start)).unwrap_or(still);
             let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried.sign() };
             let (smooth, raw) = (&pressure[still.clone()], &pressure_pa[still.clone()]);
             marks[still.clone()].fill(0);
             play(smooth, raw, thresholds.pressure_pa, half, before, &mut marks[still.clone()]);
-            let last = marks[still.end - 1].signum();
-            let behind = &mut marks[still.end..];
-            // Until the length turns, or moves at all, friction is what the pressure has made of it.
-            let turn = behind.iter().position(|mark| mark.signum() != before).unwrap_or(behind.len());
-            let turn = if turn < rest_of(still) + 2 * half { turn } else { 0 };
-            behind[..turn].fill(last);
-            behind[turn..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
+            keep(still.end, rest.end + 2 * half, before, &mut marks);
         }
     }
     let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
@@ -123,10 +111,21 @@ pub(super) fn states_of(
     }
     if thresholds.held_m > 0.0 || thresholds.turn_m > 0.0 {
         let pushed = if thresholds.standstill == Standstill::Held { &[][..] } else { &pushed };
-        let path = path(time_s, &shortening, thresholds);
+        let path = path(time_s, period_s, &shortening, thresholds);
         turn_over(&path, thresholds, slow.long, carried, pushed, &mut states);
     }
     states
+}
+
+/// Lets what the pressure has made of friction before row `from` last until the length turns, or moves at all; `before` is the
+/// sign before the push, which the length says up to a turn. A turn beyond `until` has nothing to do with it.
+fn keep(from: usize, until: usize, before: i8, marks: &mut [i8]) {
+    let last = marks[from - 1].signum();
+    let behind = &mut marks[from..];
+    let turn = behind.iter().position(|mark| mark.signum() != before).unwrap_or(behind.len());
+    let turn = if from + turn < until { turn } else { 0 };
+    behind[..turn].fill(last);
+    behind[turn..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
 }
 
 /// Deviation that is left in the path that friction turns over on, in m, where the window allows: less than strands give.
@@ -135,8 +134,7 @@ const PATH_M: f64 = 4e-6;
 const PATH_S: f64 = 0.15;
 
 /// `shortening` as parabolas describe it, over windows as long as its noise needs.
-fn path(time_s: &[f64], shortening: &[f64], thresholds: Thresholds) -> Vec<f64> {
-    let period_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
+fn path(time_s: &[f64], period_s: f64, shortening: &[f64], thresholds: Thresholds) -> Vec<f64> {
     // A parabola over n values leaves 2.25 / n of the variance in the middle one.
     let n = 2.25 * (NOISE * thresholds.length_m / PATH_M).powi(2);
     let window = Window::over(time_s, (0.5 * n * period_s).min(PATH_S));
@@ -186,13 +184,7 @@ fn turn_over(
             sign = ways[row];
             ways[from..row].fill(sign);
             (turn, farthest_m) = (around.min(row), 0.0);
-            at_turn = if from == 0 {
-                state
-            } else if from < row {
-                Some(states[from].bounds.middle())
-            } else {
-                state
-            };
+            at_turn = if 0 < from && from < row { Some(states[from].bounds.middle()) } else { state };
             row = from;
         }
         farthest_m = f64::max(farthest_m, way * (path[row] - path[turn]));
@@ -262,8 +254,8 @@ impl Slow<'_> {
         if n <= 2 * self.long {
             return;
         }
-        // Five deviations of the raw channel are a threshold; a difference of two averages has this deviation.
-        let noise = thresholds.length_m / 5.0 * (2.0 / (2 * self.half + 1) as f64).sqrt();
+        // A difference of two averages has this deviation.
+        let noise = NOISE * thresholds.length_m * (2.0 / (2 * self.half + 1) as f64).sqrt();
         let mut stills = resting.iter().peekable();
         for (row, mark) in marks.iter_mut().enumerate().take(n - self.long).skip(self.long) {
             while stills.next_if(|still| still.end <= row).is_some() {}
