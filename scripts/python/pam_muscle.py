@@ -161,6 +161,7 @@ class Moment:
     slide_m: float  # travel of the braid, rising while it contracts
     rest_slide_m: float  # the part of it that pressure has made at rest
     force_n: float  # measured, smooth; the model's own of the step before where none is measured
+    warmth_k: float = 0.0  # logged temperature above 20 C; 0 where none is logged
 
 
 # --- Effects -----------------------------------------------------------------------------------------------------------------
@@ -246,7 +247,9 @@ class SeriesCompliance:
         self.values, self.rest_length_m, self.last = values, eq11.rest_length_m, None
 
     def sees(self, now):
-        stretch_m = self.values["compliance_m_per_n"] * now.force_n
+        hardened = self.values["hardening_per_n"] * max(now.force_n, 0.0)
+        softer = math.log1p(hardened) / hardened if hardened > 1e-9 else 1.0
+        stretch_m = self.values["compliance_m_per_n"] * now.force_n * softer
         now.length_m -= stretch_m
         now.contraction_ratio += stretch_m / self.rest_length_m
         now.slide_m += stretch_m
@@ -456,13 +459,24 @@ class PressureCreep:
 
 
 class MullinsSoftening:
+    HALF_PLAY = 5e-4
+
     def __init__(self, values, eq11):
-        self.values, self.largest = values, -math.inf
+        self.values, self.largest, self.follower, self.travelled = values, -math.inf, 0.0, 0.0
 
     def pulls(self, now, base):
-        self.largest = max(self.largest, now.contraction_ratio)
-        below = (self.largest - now.contraction_ratio) / self.values["softening_contraction"]
-        return base.latex_n * math.expm1(-below) * self.values["softening"]
+        here = now.contraction_ratio
+        self.largest = max(self.largest, here)
+        if now.step_s == 0.0:
+            self.follower = here
+        else:
+            followed = min(max(self.follower, here - self.HALF_PLAY), here + self.HALF_PLAY)
+            self.travelled += abs(followed - self.follower)
+            self.follower = followed
+        below = (self.largest - here) / self.values["softening_contraction"]
+        settled = self.travelled / self.values["settling_travel"]
+        softer = math.expm1(-below) * self.values["softening"] + math.expm1(-settled) * self.values["settling"]
+        return base.latex_n * softer
 
 
 class ThermalSoftening:
@@ -479,7 +493,8 @@ class ThermalSoftening:
             share = math.expm1(-max(now.time_s - last_s, 0.0) / self.values["time_constant_s"])
             self.warmth += (self.warmth - heating) * share
         self.last = (now.time_s, power)
-        return -base.latex_n * self.warmth * self.values["softening_per_kilowatt"]
+        softer = self.warmth * self.values["softening_per_kilowatt"] + now.warmth_k * self.values["softening_per_kelvin"]
+        return -base.latex_n * softer
 
 
 class FatigueWear:
@@ -678,20 +693,22 @@ UNITS = {  # (multiply, divide)
                  "psi": (4.4482216152605, 0.0254 * 0.0254)},
     "length": {"mm": (1.0, 1e3), "m": (1.0, 1.0), "cm": (1.0, 1e2), "in": (0.0254, 1.0)},
     "force": {"n": (1.0, 1.0), "kn": (1e3, 1.0), "lbf": (4.4482216152605, 1.0), "kgf": (9.80665, 1.0)},
+    "temperature": {"c": (1.0, 1.0), "k": (1.0, 1.0)},
 }  # fmt: skip
 
 
 @dataclasses.dataclass
 class Recording:
-    """Columns of a recording, in SI; `force_n` is None where none was measured. Stamps rise."""
+    """Columns of a recording, in SI; `force_n` and `temperature_k` are None where none was measured. Stamps rise."""
 
     time_s: np.ndarray
     pressure_pa: np.ndarray
     length_m: np.ndarray
     force_n: np.ndarray = None
+    temperature_k: np.ndarray = None
 
     def __post_init__(self):
-        for name in ("time_s", "pressure_pa", "length_m", "force_n"):
+        for name in ("time_s", "pressure_pa", "length_m", "force_n", "temperature_k"):
             column = getattr(self, name)
             setattr(self, name, None if column is None else np.asarray(column, float))
         if not (np.diff(self.time_s) > 0.0).all():
@@ -713,7 +730,10 @@ class Recording:
         missing = [quantity for quantity in ("time", "pressure", "length") if quantity not in columns]
         if missing:
             raise ValueError(f"{path}: the header names no {' and no '.join(missing)}; write it as in pressure_kPa")
-        return cls(columns["time"], columns["pressure"], columns["length"], columns.get("force"))
+        temperature = columns.get("temperature")
+        if temperature is not None and "temperature_c" in (name.strip().lower() for name in rows[0]):
+            temperature = temperature + 273.15
+        return cls(columns["time"], columns["pressure"], columns["length"], columns.get("force"), temperature)
 
     def segments(self):
         """Ranges of rows between gaps in time: much longer than the usual step and than either neighbor."""
@@ -1320,6 +1340,9 @@ def walk_segment(recording, rows, directions, muscle, origin_s):
     average_m = averages(weights, length.rest) + length.added
     average_pa = averages(weights, pressure.rest) + pressure.added
     force_n = near.parabolas(recording.force_n[rows])[0] if recording.force_n is not None else np.zeros(len(time_s))
+    warmth_k = np.zeros(len(time_s))
+    if recording.temperature_k is not None:
+        warmth_k = near.parabolas(recording.temperature_k[rows])[0] - 293.15
     noise = math.sqrt((weights * weights).sum()) * (6.0 / 5.0)
     rest_slide_pa = eq11.slide_m_per_pa(eq11.rest_length_m) * thresholds["pressure_pa"]
     contraction = BacklashFilter(noise * thresholds["length_m"], window.width_s)
@@ -1348,6 +1371,7 @@ def walk_segment(recording, rows, directions, muscle, origin_s):
             slide_m=float(slide.follow(shortened_m[at] + by_pressure_m[at], speeds[at])),
             rest_slide_m=float(rest_slide.follow(by_pressure_m[at], speeds[at] if resting[at] else 0.0)),
             force_n=float(force_n[at]),
+            warmth_k=float(warmth_k[at]),
         ))  # fmt: skip
     return moments
 

@@ -429,7 +429,7 @@ fn an_effect_that_is_not_the_muscle_s_stays_at_the_bench() {
     with_effect(
         folder.path(),
         "series-compliance",
-        &[("compliance_m_per_n", 1e-6, "m/N"), ("sliding_share", 1.0, "1")],
+        &[("compliance_m_per_n", 1e-6, "m/N"), ("sliding_share", 1.0, "1"), ("hardening_per_n", 0.0, "1/N")],
     );
     assert_eq!(mae_rad(folder.path(), &["--plant", "effect.json"]).to_bits(), base_rad.to_bits());
     let output = run(folder.path(), &["--out", "track.csv", "--plant", "effect.json"]);

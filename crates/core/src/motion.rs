@@ -129,6 +129,7 @@ pub fn walk(
                     slide_m,
                     rest_slide_m,
                     force_n: smooth_force_n,
+                    warmth_k: warmth_k(&rows.temperature_k, &near, at),
                 },
                 force_n: choose(smooth_force_n, rows.force_n.get(at).copied().unwrap_or(0.0)),
                 knee: recorded && lengths.knees.bend(at) != 0.0,
@@ -147,18 +148,29 @@ pub fn walk(
     Ok(())
 }
 
+/// 20 °C, which effects count a temperature from, in K.
+const ROOM_K: f64 = 293.15;
+
+/// Temperature above [`ROOM_K`] around row `at`, in K; zero where none was logged.
+fn warmth_k(temperature_k: &[f64], near: &Window, at: usize) -> f64 {
+    if temperature_k.is_empty() { 0.0 } else { near.parabola(temperature_k, at).value - ROOM_K }
+}
+
 /// Columns of one segment.
+#[derive(Default)]
 struct Rows {
     time_s: Vec<f64>,
     pressure_pa: Vec<f64>,
     length_m: Vec<f64>,
     /// Empty where none was recorded.
     force_n: Vec<f64>,
+    /// Likewise.
+    temperature_k: Vec<f64>,
 }
 
 impl Rows {
     fn read(recording: &Recording, segment: std::ops::Range<usize>) -> io::Result<Self> {
-        let mut rows = Self { time_s: Vec::new(), pressure_pa: Vec::new(), length_m: Vec::new(), force_n: Vec::new() };
+        let mut rows = Self::default();
         for index in 0..recording.samples.n_chunks() {
             let here = recording.samples.chunk_rows(index);
             let (from, to) = (segment.start.max(here.start), segment.end.min(here.end));
@@ -171,7 +183,10 @@ impl Rows {
             rows.pressure_pa.extend_from_slice(&chunk.pressure_pa()[range.clone()]);
             rows.length_m.extend_from_slice(&chunk.length_m()[range.clone()]);
             if recording.samples.has_force() {
-                rows.force_n.extend_from_slice(&chunk.force_n()[range]);
+                rows.force_n.extend_from_slice(&chunk.force_n()[range.clone()]);
+            }
+            if recording.samples.has_temperature() {
+                rows.temperature_k.extend_from_slice(&chunk.temperature_k()[range]);
             }
         }
         Ok(rows)

@@ -141,6 +141,7 @@ impl Diagnosis {
             after_n: together(&agreement.estimation).rmse_n,
             floor_n: agreement.noise_floor_n,
             matters_n: self.sizes.matters_n,
+            static_n: self.sizes.static_n,
             with_map: self.entries.iter().any(|entry| entry.id == MAP_ID),
         }
     }

@@ -193,7 +193,9 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
     let nuisance = found.nuisance.clone();
     let setting = question.setting(&track, &nuisance);
-    if knocks.is_none() && verdict(&found, &sizes, false) == Verdict::Unexplained {
+    let is_doubtful =
+        verdict(&found, &sizes, false) == Verdict::Unexplained || stand_ins::leaves_too_much(&found, &sizes);
+    if knocks.is_none() && is_doubtful {
         let places = structured(&setting, &found.best.state, &found, &paths);
         let left_over = telling(places, &[]).first().map(|region| region.coordinate);
         sizes = stand_ins::let_go(&setting, &mut found, &sizes, &question.limits, left_over);

@@ -251,6 +251,7 @@ impl Path {
                         slide_m,
                         rest_slide_m: 0.0,
                         force_n: 0.0,
+                        warmth_k: 0.0,
                     },
                     force_n: base.force_n(pressure_pa, length_m, direction),
                     knee: false,

@@ -45,7 +45,7 @@ static TYPICAL: [Typical; 22] = [
     // 1 N per hour and 2 N.
     Typical { id: "force-drift", shapes: &[&[120.0]], amplitudes: &[1.0 / 3600.0, 2.0] },
     // 100 N/mm.
-    Typical { id: "series-compliance", shapes: &[&[1e-5, 1.0]], amplitudes: &[] },
+    Typical { id: "series-compliance", shapes: &[&[1e-5, 1.0, 0.0]], amplitudes: &[] },
     Typical { id: "inertia", shapes: &[&[25.0]], amplitudes: &[0.5] },
     Typical { id: "slack", shapes: &[&[0.0, 0.0]], amplitudes: &[] },
     Typical { id: "pressure-lag", shapes: &[&[0.06]], amplitudes: &[] },
@@ -61,8 +61,8 @@ static TYPICAL: [Typical; 22] = [
     Typical { id: "viscous-damping", shapes: &[&[]], amplitudes: &[100.0, 100.0] },
     Typical { id: "viscoelastic-relaxation", shapes: &[&[3.0]], amplitudes: &[0.1, 0.1, 0.1] },
     Typical { id: "pressure-creep", shapes: &[&[3.0, 0.0], &[3.0, 1.0]], amplitudes: &[0.025, 0.025, 0.025] },
-    Typical { id: "mullins-softening", shapes: &[&[0.03]], amplitudes: &[0.06] },
-    Typical { id: "thermal-softening", shapes: &[&[400.0]], amplitudes: &[0.1] },
+    Typical { id: "mullins-softening", shapes: &[&[0.03, 0.5]], amplitudes: &[0.06, 0.06] },
+    Typical { id: "thermal-softening", shapes: &[&[400.0]], amplitudes: &[0.1, 0.0] },
     Typical { id: "fatigue-wear", shapes: &[&[0.5], &[1.0]], amplitudes: &[0.02] },
     Typical { id: "force-step", shapes: &[], amplitudes: &[2.0] },
 ];

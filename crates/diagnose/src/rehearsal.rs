@@ -122,6 +122,7 @@ impl Rehearsal {
                 slide_m: muscle.rest_length_m - here.2 + slide_by_pressure_m,
                 rest_slide_m: slide_by_pressure_m,
                 force_n: force_n(reach.model, here.1, here.2, point.direction),
+                warmth_k: 0.0,
             };
             self.track.instants.push(Instant { row: at, moment, force_n: moment.force_n, knee: false, settled: true });
             let left_s = if at == 0 { point.time_s } else { points[at - 1].time_s };

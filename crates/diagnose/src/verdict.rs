@@ -18,10 +18,14 @@ pub struct Sizes {
     pub matters_n: f64,
     /// Share of the base model's residual (mean squares) that is structured.
     pub structured_share: f64,
+    /// What no model gets below, mean square in N².
+    pub floor_square: f64,
     /// What the best hypothesis leaves.
     pub best_n: f64,
     /// What the noise of the sensors alone leaves.
     pub sensors_n: f64,
+    /// What a smooth static map takes of the base model's residual, where that is more than it takes of any muscle's.
+    pub static_n: Option<f64>,
     /// Whether the user said what matters.
     pub limited: bool,
 }
@@ -49,8 +53,10 @@ impl Sizes {
         let base = found.whole.held_out.mean_square();
         Self {
             structured_share: (excess(base, found.floor_square).powi(2) / base.max(f64::MIN_POSITIVE)).min(1.0),
+            floor_square: found.floor_square,
             best_n: best.sqrt(),
             sensors_n: limits.sensor_floor_n,
+            static_n: beyond_form(found),
             limited: limits.matters_above_n.is_some(),
             floor_n,
             mismatch_n: excess(base, found.floor_square),
@@ -65,6 +71,12 @@ impl Sizes {
         Self { mismatch_n: self.mismatch_n.hypot(knocks.all_rows_n), ..self }
     }
 
+    /// Share of the mismatch that the best hypothesis leaves, in mean squares, by what any model leaves.
+    pub fn share_unexplained(&self) -> f64 {
+        let excess = |rmse_n: f64| rmse_n.powi(2) - self.floor_square;
+        if self.mismatch_n > 0.0 { (excess(self.best_n) / self.mismatch_n.powi(2)).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
     /// Whether far more of the mismatch is left than was explained.
     pub fn most_is_left(&self) -> bool {
         self.share_left() > MOST
@@ -76,13 +88,21 @@ impl Sizes {
     }
 }
 
+/// What the static map of `found` takes of the base model's residual, in N, where no form of eq. 11 accounts for that much.
+fn beyond_form(found: &Found) -> Option<f64> {
+    let square = found.base.held_out.mean_square() - found.whole.held_out.mean_square();
+    (square > found.form_square).then(|| square.sqrt())
+}
+
 /// The verdict, for what the search found; `knocks` says whether a mass was named besides.
 pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
     let more_than = |times: f64, share: f64| sizes.left_n > times * sizes.matters_n && sizes.share_left() > share;
     let structured = more_than(0.5, MOST_LEFT) || more_than(1.0, LEAST_LEFT);
     if found.best.state.guesses.is_empty() && !knocks {
         let beyond_sensors = !sizes.limited && sizes.best_n > CONSISTENT_WITHIN * sizes.sensors_n;
-        let is_missing = sizes.mismatch_n > sizes.matters_n || beyond_sensors;
+        let is_missing = sizes.mismatch_n > sizes.matters_n || beyond_sensors || sizes.static_n.is_some();
+        // What called up a name that is none is there.
+        let is_missing = is_missing || !found.stand_ins.is_empty();
         return if is_missing { Verdict::Unexplained } else { Verdict::Consistent };
     }
     if structured {
@@ -110,4 +130,37 @@ pub fn alternatives(found: &Found, index: usize) -> Vec<&'static str> {
         })
         .map(|rival| rival.guess.id())
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+    use crate::search::search;
+    use crate::state::Setting;
+
+    /// The verdict where the base lacks a smooth static force of `size_n` at most.
+    fn verdict_of(size_n: f64) -> Verdict {
+        let mut given = Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[]);
+        for (at, instant) in given.track.instants.iter_mut().enumerate() {
+            let (p, e) = (instant.moment.pressure_pa * 2e-6, instant.moment.contraction_ratio * 5.0);
+            instant.force_n += size_n * (2.5 * p + 2.0 * e).sin() * p + 0.2 * (0.37 * at as f64).sin();
+        }
+        let limits = Limits {
+            max_effects: 0,
+            excluded: Vec::new(),
+            matters_above_n: None,
+            sensor_floor_n: 0.3,
+            confirmed: false,
+        };
+        let setting = Setting { floor_square: 0.09, ..given.setting() };
+        let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
+        verdict(&found, &Sizes::of(&found, &limits), false)
+    }
+
+    #[test]
+    fn a_smooth_static_force_is_the_form_of_a_muscle_until_no_muscle_has_so_much() {
+        assert_eq!(verdict_of(6.0), Verdict::Consistent);
+        assert_eq!(verdict_of(200.0), Verdict::Unexplained);
+    }
 }

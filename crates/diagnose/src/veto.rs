@@ -18,6 +18,8 @@ use crate::uncertainty::correlated_instants;
 
 /// Share of its size that an effect must be seen with on what was held out: half way between there and not there.
 const SEEN: f64 = 0.5;
+/// The same at most: what is fitted where it hardly shows may come out a little small, but nothing shows a third larger than it is.
+const MOST_SEEN: f64 = 4.0 / 3.0;
 /// Standard errors by which it must fall short of that: one in forty by chance.
 const SURELY: f64 = 2.0;
 /// Pieces of the held-out recordings that stand for independent ones.
@@ -32,21 +34,35 @@ pub(crate) fn confirmed(question: &Question<'_>, track: &Track, mut found: Found
         .with_reversals(heldout, &coordinates, &found.best.state.model)
         .with_map(heldout, &coordinates);
     let held = question.setting(heldout, &beside);
-    while let Some(index) = denied(&held, &found) {
+    while let Some(Denied { index, too_large, .. }) = denied(&held, &found) {
+        let id = found.best.state.guesses[index].id();
         if !found.let_go(&setting, index) {
             break;
+        }
+        if too_large {
+            found.stand_ins.push(id);
         }
     }
     found
 }
 
+/// An effect that what was held out denies.
+#[derive(Debug, Clone, Copy)]
+struct Denied {
+    index: usize,
+    /// Largest share with which it may be there.
+    most: f64,
+    /// Whether something is there, but more than it.
+    too_large: bool,
+}
+
 /// The effect of `found` that what was held out denies most clearly, or does not confirm where another one is stronger: what is
 /// left of the strongest is easily taken for a second one.
-fn denied(held: &Setting<'_>, found: &Found) -> Option<usize> {
+fn denied(held: &Setting<'_>, found: &Found) -> Option<Denied> {
     let state = &found.best.state;
     let evidence = |index: usize| found.taken.get(index).map_or(0.0, |taken| taken.without.log_ratio(&taken.with));
     let strongest = (0..state.guesses.len()).max_by(|left, right| evidence(*left).total_cmp(&evidence(*right)));
-    let mut least: Option<(f64, usize)> = None;
+    let mut least: Option<Denied> = None;
     for (index, guess) in state.guesses.iter().enumerate() {
         // An event is none of the others' recordings; in the place of a smooth static effect the static map would do as well.
         if guess.effect.kind() == Kind::Event || guess.effect.is_static() && !guess.effect.is_local() {
@@ -55,7 +71,10 @@ fn denied(held: &Setting<'_>, found: &Found) -> Option<usize> {
         // What acts in a part of the range alone may not have been there.
         let stands = strongest == Some(index) || guess.effect.is_static();
         let share = share(held, state, index);
-        let is_denied = share.is_some_and(|share| share.most() < SEEN);
+        // What is permanent may have come to its end before: only the opposite denies it.
+        let least_seen = if guess.effect.is_permanent() { 0.0 } else { SEEN };
+        let too_large = !guess.effect.outlasts() && share.is_some_and(|share| share.least() > MOST_SEEN);
+        let is_denied = too_large || share.is_some_and(|share| share.most() < least_seen);
         let is_unseen = !stands && share.is_none_or(|share| share.least() <= 0.0);
         // What is denied goes before what is only not seen.
         let most = match share {
@@ -63,11 +82,11 @@ fn denied(held: &Setting<'_>, found: &Found) -> Option<usize> {
             Some(share) => share.value.max(SEEN),
             None => SEEN,
         };
-        if (is_denied || is_unseen) && least.is_none_or(|(lowest, _)| most < lowest) {
-            least = Some((most, index));
+        if (is_denied || is_unseen) && least.is_none_or(|least| most < least.most) {
+            least = Some(Denied { index, most, too_large });
         }
     }
-    least.map(|(_, index)| index)
+    least
 }
 
 /// Share of its size with which an effect is there.
@@ -185,5 +204,16 @@ mod tests {
         let (confirmed, denied) = (seen(&same, &fitted).expect("a share"), seen(&other, &fitted).expect("a share"));
         assert!((confirmed.value - 1.0).abs() < 0.1, "{confirmed:?}");
         assert!(denied.most() < SEEN, "{denied:?}");
+    }
+
+    #[test]
+    fn an_effect_that_is_held_out_much_larger_than_it_was_fitted_is_another_one() {
+        let lag = |time_constant_s: &'static [f64]| -> (&'static str, &'static [f64], &'static [f64]) {
+            ("pressure-lag", time_constant_s, &[])
+        };
+        let fitted = Given::of(&["isobaric-triangles", "isometric-ramps"], &[lag(&[0.15])]);
+        let larger = Given::of(&["multisine"], &[lag(&[0.27])]);
+        let found = seen(&larger, &fitted).expect("a share");
+        assert!(found.least() > MOST_SEEN, "{found:?}");
     }
 }

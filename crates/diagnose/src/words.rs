@@ -17,6 +17,8 @@ pub(crate) struct Numbers {
     pub(crate) floor_n: f64,
     /// Excess over the noise floor that would matter.
     pub(crate) matters_n: f64,
+    /// What a smooth static map takes of the mismatch, where eq. 11 accounts for less in any muscle.
+    pub(crate) static_n: Option<f64>,
     /// Whether a smooth static map stands beside the effects.
     pub(crate) with_map: bool,
 }
@@ -76,7 +78,9 @@ pub(crate) fn statement(
             )
         }
         Verdict::Unexplained => {
-            let place = unexplained.first().map_or_else(|| "nowhere in particular".to_owned(), place);
+            let smooth = |static_n: f64| format!("in a smooth function of pressure and length, of {static_n:.2} N");
+            let anywhere = || numbers.static_n.map_or_else(|| "nowhere in particular".to_owned(), smooth);
+            let place = unexplained.first().map_or_else(anywhere, place);
             if names.is_empty() {
                 format!(
                     "Unmodelled structure: refitted, the model leaves an RMSE of {:.2} N, where noise leaves {:.2} N, and no effect of \

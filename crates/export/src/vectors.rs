@@ -19,7 +19,7 @@ use crate::ExportError;
 /// Header of [`csv`], one name per field of a [`Moment`] and the modelled force.
 pub const COLUMNS: &str = "time_s,step_s,pressure_pa,pressure_rate_pa_per_s,length_m,contraction_ratio,speed_m_per_s,\
                            slide_speed_m_per_s,acceleration_m_per_s2,direction,came,slide_m,rest_slide_m,force_seen_n,\
-                           force_model_n";
+                           warmth_k,force_model_n";
 
 /// An instant and the force that the model has there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,10 +32,10 @@ pub struct Vector {
 
 impl Vector {
     /// The values of [`COLUMNS`].
-    pub fn values(&self) -> [f64; 15] {
+    pub fn values(&self) -> [f64; 16] {
         let Moment { recording: _, time_s, step_s, pressure_pa, pressure_rate_pa_per_s, length_m, .. } = self.moment;
         let Moment { contraction_ratio, speed_m_per_s, slide_speed_m_per_s, acceleration_m_per_s2, .. } = self.moment;
-        let Moment { direction, came, slide_m, rest_slide_m, force_n, .. } = self.moment;
+        let Moment { direction, came, slide_m, rest_slide_m, force_n, warmth_k, .. } = self.moment;
         [
             time_s,
             step_s,
@@ -51,6 +51,7 @@ impl Vector {
             slide_m,
             rest_slide_m,
             force_n,
+            warmth_k,
             self.force_n,
         ]
     }
@@ -144,6 +145,7 @@ fn path(muscle: &Muscle, domain: &Domain) -> Vec<Moment> {
             came: false,
             slide_m: settled.slide_m + rest_slide_m,
             rest_slide_m,
+            warmth_k: 3.0 + 5.0 * share,
             ..settled
         });
     }

@@ -4,6 +4,7 @@ use pam_core::artifact::model::FitStatistics;
 use pam_core::direction::Thresholds;
 use pam_core::effects::AugmentedModel;
 use pam_core::force::ForceModel;
+use pam_core::quality::channel::whole_noise_std;
 use pam_core::recording::CHUNK_ROWS;
 use rayon::prelude::*;
 
@@ -286,8 +287,13 @@ fn tally(prepared: &Prepared, model: &ForceModel) -> std::io::Result<Tally> {
 pub fn noise_floor_n(recordings: &[Prepared], model: &ForceModel) -> Result<f64, IdentifyError> {
     let (mut squares, mut rows) = (0.0, 0.0);
     for prepared in recordings {
-        let noise = |name: &str| prepared.quality.channel(name).map_or(0.0, |channel| channel.colored_noise);
-        let (noise_pa, noise_m, noise_n) = (noise("pressure"), noise("length"), noise("force"));
+        let channel = |name: &str| prepared.quality.channel(name);
+        // A pressure wanders by itself at the pulse of its valve, and the force with it.
+        let noise_pa = channel("pressure").map_or(0.0, |channel| channel.colored_noise);
+        let [noise_m, noise_n] = ["length", "force"].map(|name| {
+            channel(name)
+                .map_or(0.0, |channel| whole_noise_std(channel.noise, channel.colored_noise, prepared.quality.period_s))
+        });
         let stride = trace_stride(prepared);
         let trace = every(
             prepared,

@@ -76,6 +76,8 @@ pub struct Identified {
     pub thresholds: Thresholds,
     /// Laws of friction at standstill that were compared, the one taken first.
     pub laws: Vec<StandstillFit>,
+    /// Whether only what was held out tells them apart.
+    pub told_by_validation: bool,
     /// Estimation recordings.
     pub estimation: Vec<Prepared>,
     /// Validation recordings.
@@ -211,13 +213,21 @@ impl Checked {
         let force_noise_n = self.force_noise_n();
         let mut estimation = direct(std::mem::take(&mut self.gates), thresholds, self.form)?;
         let columns = ForceColumns::new(&self.muscle.muscle, self.muscle.strand_modulus_pa, self.form, largest_n_per_m);
-        let laws = self.judge_standstill(&estimation, &columns, thresholds)?;
+        let mut validation = direct(validation, thresholds, self.form)?;
+        let mut judges: Vec<&Prepared> = estimation.iter().collect();
+        let mut laws = self.judge_standstill(&judges, &columns, thresholds)?;
+        let told_by_validation = standstill::is_undecided(&laws) && !validation.is_empty();
+        if told_by_validation {
+            judges.extend(&validation);
+            laws = self.judge_standstill(&judges, &columns, thresholds)?;
+        }
+        let told_by_validation = told_by_validation && !standstill::is_undecided(&laws);
         let mut thresholds = Thresholds { standstill: laws[0].standstill, ..thresholds };
         if self.form == Form::Corrected {
-            thresholds = standstill::turning(&estimation, &columns, thresholds)?;
+            thresholds = standstill::turning(&estimation.iter().collect::<Vec<_>>(), &columns, thresholds)?;
         }
         redirect(&mut estimation, thresholds, self.form)?;
-        let mut validation = direct(validation, thresholds, self.form)?;
+        redirect(&mut validation, thresholds, self.form)?;
         let condensed = condense(&estimation, &columns, 1, None)?;
         enough(&estimation[0].recording.path, condensed.total.n_rows() as usize)?;
         let (space, unidentifiable) = self.search_space(&columns, &condensed, force_noise_n);
@@ -254,6 +264,7 @@ impl Checked {
             unidentifiable,
             thresholds,
             laws,
+            told_by_validation,
             estimation,
             validation,
             estimation_fit,
@@ -272,7 +283,7 @@ impl Checked {
     /// Laws of friction at standstill, the one to be taken first; only one where it is assumed or makes no difference.
     fn judge_standstill(
         &self,
-        estimation: &[Prepared],
+        recordings: &[&Prepared],
         columns: &ForceColumns,
         thresholds: Thresholds,
     ) -> Result<Vec<StandstillFit>, IdentifyError> {
@@ -281,7 +292,7 @@ impl Checked {
             None if self.form == Form::AsPrinted => {
                 Ok(vec![StandstillFit { standstill: thresholds.standstill, rmse_n: f64::NAN }])
             }
-            None => standstill::judge(estimation, columns, thresholds),
+            None => standstill::judge(recordings, columns, thresholds),
         }
     }
 

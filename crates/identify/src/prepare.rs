@@ -62,8 +62,8 @@ pub fn gate(recordings: Vec<Recording>) -> Result<Vec<Gated>, IdentifyError> {
         .collect()
 }
 
-/// Thresholds of the direction that fit all of `gates`: five times the worst noise, and never less than 1e-4 of
-/// the rest length or 1e-3 of the highest pressure, below which a flip means nothing.
+/// Thresholds of the direction that fit all of `gates`: five times the worst noise, for the length what it wanders within while
+/// it rests, and never less than 1e-4 of the rest length or 1e-3 of the highest pressure, below which a flip means nothing.
 pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
     let worst = |name: &str| {
         gates
@@ -77,8 +77,10 @@ pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
         .filter_map(|gate| gate.quality.channel("pressure"))
         .map(|channel| channel.highest)
         .fold(0.0, f64::max);
+    // A recording that moves slowly all the time shows more.
+    let rests = gates.iter().filter_map(|gate| gate.quality.channel("length")?.wanders_within()).reduce(f64::min);
     Thresholds {
-        length_m: worst("length").max(1e-4 * muscle.rest_length_m),
+        length_m: worst("length").max(rests.unwrap_or(0.0)).max(1e-4 * muscle.rest_length_m),
         pressure_pa: worst("pressure").max(1e-3 * highest_pa),
         held_m: 0.0,
         turn_m: 0.0,

@@ -184,6 +184,13 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
             }
         }
     }
+    if found.told_by_validation {
+        warnings.push(format!(
+            "in no recording that was fitted does the pressure move while the length rests, so that what was held out decides \
+             what friction does there ({}); add such a recording to those that are fitted, or say it with --standstill",
+            found.laws[0].standstill.words()
+        ));
+    }
     let doubtful: Vec<(&str, f64)> = prepared()
         .map(|prepared| {
             let n_rows = prepared.recording.samples.n_rows().max(1) as f64;

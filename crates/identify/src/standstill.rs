@@ -42,7 +42,7 @@ const HARDLY: f64 = 5e-4;
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn judge(
-    recordings: &[Prepared],
+    recordings: &[&Prepared],
     columns: &ForceColumns,
     thresholds: Thresholds,
 ) -> Result<Vec<StandstillFit>, IdentifyError> {
@@ -69,13 +69,21 @@ pub fn judge(
     Ok(judged)
 }
 
+/// Whether `laws` leave the same: nothing that they were judged by tells them apart.
+pub fn is_undecided(laws: &[StandstillFit]) -> bool {
+    let of = |law: &StandstillFit| law.rmse_n * law.rmse_n;
+    let (least, most) =
+        laws.iter().map(of).fold((f64::INFINITY, 0.0), |(low, high), left| (f64::min(low, left), f64::max(high, left)));
+    laws.len() > 1 && least > (1.0 - CLEARLY) * most
+}
+
 /// `thresholds` with the travels in which friction turns over after a reversal: those of [`HELD_M`] and [`TURNS_M`] that leave
 /// least of the force; none where nothing is clearly gained.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn turning(
-    recordings: &[Prepared],
+    recordings: &[&Prepared],
     columns: &ForceColumns,
     thresholds: Thresholds,
 ) -> Result<Thresholds, IdentifyError> {
@@ -95,7 +103,7 @@ pub fn turning(
 }
 
 /// Every how many rows are looked at.
-fn stride(recordings: &[Prepared]) -> usize {
+fn stride(recordings: &[&Prepared]) -> usize {
     let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
     n_rows.div_ceil(MOST_ROWS).max(1)
 }
@@ -111,7 +119,7 @@ enum Counts {
 
 /// What the columns leave of the force under `thresholds`, in N².
 fn mean_square(
-    recordings: &[Prepared],
+    recordings: &[&Prepared],
     columns: &ForceColumns,
     thresholds: Thresholds,
     counts: Counts,
@@ -173,4 +181,17 @@ fn condensed(
     }
     summary.fold_part(&mut block, filled);
     Ok(summary)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn laws_that_leave_the_same_are_undecided_and_one_law_alone_is_not() {
+        let law = |rmse_n| StandstillFit { standstill: Standstill::Held, rmse_n };
+        assert!(is_undecided(&[law(0.9489), law(0.9489), law(0.9501)]));
+        assert!(!is_undecided(&[law(0.9489), law(0.9489), law(0.97)]));
+        assert!(!is_undecided(&[law(0.9489)]) && !is_undecided(&[]));
+    }
 }

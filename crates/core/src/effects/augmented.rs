@@ -343,7 +343,8 @@ mod tests {
     #[test]
     fn a_settled_fixture_is_stretched_by_the_force_that_results() {
         for (compliance_m_per_n, length_m) in [(2e-5, 0.24), (4e-5, 0.266), (1e-4, 0.266)] {
-            let model = AugmentedModel::new(base(), vec![term("series-compliance", &[compliance_m_per_n, 1.0], &[])]);
+            let model =
+                AugmentedModel::new(base(), vec![term("series-compliance", &[compliance_m_per_n, 1.0, 0.0], &[])]);
             let force_n = model.settled_force_n(3e5, length_m, 1.0);
             let expected_n = base().force_n(3e5, length_m - compliance_m_per_n * force_n, 1.0);
             assert!((force_n - expected_n).abs() < 1e-9 * force_n, "{force_n} {expected_n}");

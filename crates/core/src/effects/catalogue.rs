@@ -180,6 +180,8 @@ mod tests {
             ("Pa", "_pa"),
             ("kg", "_kg"),
             ("Hz", "_hz"),
+            ("1/N", "_per_n"),
+            ("1/K", "_per_kelvin"),
         ];
         for effect in CATALOGUE {
             let id = effect.page().id;
@@ -204,7 +206,7 @@ mod tests {
     fn grids_and_amplitudes_fit_their_roles() {
         for effect in CATALOGUE {
             let id = effect.page().id;
-            assert!(effect.shape().len() <= 2, "{id}");
+            assert!(effect.shape().len() <= 3, "{id}");
             assert_eq!(effect.amplitudes().is_empty(), effect.role() != Role::Pulls, "{id}");
             for shape in effect.shape() {
                 assert!((1..=7).contains(&shape.grid.len()) && shape.grid.is_sorted(), "{id}: {}", shape.name);
@@ -294,6 +296,7 @@ mod tests {
                         slide_m: generator.random_range(-0.01..0.1),
                         rest_slide_m: generator.random_range(-1e-3..1e-3),
                         force_n: generator.random_range(-50.0..900.0),
+                        warmth_k: generator.random_range(-5.0..30.0),
                     };
                     memory.sees(&mut now);
                     let slides = memory.slides(&now);

@@ -43,6 +43,10 @@ impl Effect for FatigueWear {
         true
     }
 
+    fn is_permanent(&self) -> bool {
+        true
+    }
+
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         Box::new(State { exponent: shape[0], travel_m: 0.0, follower_m: 0.0 })
     }

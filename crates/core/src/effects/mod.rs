@@ -201,6 +201,11 @@ pub trait Effect: Sync {
         false
     }
 
+    /// Whether what it has changed stays: it comes to its end, and recordings behind that show nothing of it.
+    fn is_permanent(&self) -> bool {
+        false
+    }
+
     /// Whether its pull needs the slopes of [`Base`], which cost four more evaluations of eq. 11.
     fn uses_slopes(&self) -> bool {
         false

@@ -39,6 +39,8 @@ pub struct Moment {
     pub rest_slide_m: f64,
     /// Force as measured, smooth, where it was measured; as the model had it a moment ago elsewhere.
     pub force_n: f64,
+    /// Logged temperature above 20 °C, in K; zero where none was logged.
+    pub warmth_k: f64,
 }
 
 /// What eq. 11 says at the same instant, at the pressure and length that the muscle sees.
@@ -94,6 +96,7 @@ impl Moment {
             slide_m: muscle.rest_length_m - length_m,
             rest_slide_m: 0.0,
             force_n: 0.0,
+            warmth_k: 0.0,
         }
     }
 }
@@ -161,6 +164,7 @@ pub(super) mod tests {
             slide_m: 0.027,
             rest_slide_m: 0.0,
             force_n: 350.0,
+            warmth_k: 0.0,
         }
     }
 

@@ -1,7 +1,8 @@
 //! Mullins softening: rubber is softer below the largest stretch that it has seen.
 //!
 //! ```text
-//! F = F_base - d f [1 - exp(-(ε_m - ε) / ε_c)],   ε_m = max ε so far,   f = V_r dW/dL of latex
+//! F = F_base - d f [1 - exp(-(ε_m - ε) / ε_c)] - e f [1 - exp(-s / s_c)]
+//! ε_m = max ε so far,   s = ∫ |dε|,   f = V_r dW/dL of latex
 //! ```
 
 use super::page::{Confusion, Page, Symbol};
@@ -27,42 +28,71 @@ impl Effect for MullinsSoftening {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "softening_contraction", unit: "1", range: (3e-3, 0.3), grid: &[0.01, 0.03, 0.1] }]
+        &[
+            Shape { name: "softening_contraction", unit: "1", range: (3e-3, 0.3), grid: &[0.01, 0.03, 0.1] },
+            Shape { name: "settling_travel", unit: "1", range: (0.02, 5.0), grid: &[0.2, 0.8] },
+        ]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "softening", unit: "1", range: (0.0, 1.5) }]
+        &[
+            Amplitude { name: "softening", unit: "1", range: (0.0, 1.5) },
+            Amplitude { name: "settling", unit: "1", range: (0.0, 1.5) },
+        ]
     }
 
     fn outlasts(&self) -> bool {
         true
     }
 
+    fn is_permanent(&self) -> bool {
+        true
+    }
+
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { softening_contraction: shape[0], largest: f64::NEG_INFINITY })
+        let &[softening_contraction, settling_travel] = shape else { unreachable!("two shape parameters") };
+        let largest = f64::NEG_INFINITY;
+        Box::new(State { softening_contraction, settling_travel, largest, follower: 0.0, travelled: 0.0 })
     }
 }
 
 struct State {
     softening_contraction: f64,
+    settling_travel: f64,
     /// Largest contraction of the recording; gaps do not heal the rubber.
     largest: f64,
+    /// Contraction behind that of the muscle by up to half the play, and the travel of it; that in gaps is left out.
+    follower: f64,
+    travelled: f64,
 }
+
+/// Half the play in the count of travel, in contraction; noise at rest stays inside it.
+const HALF_PLAY: f64 = 5e-4;
 
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
         self.largest = self.largest.max(now.contraction_ratio);
         let below = (self.largest - now.contraction_ratio) / self.softening_contraction;
+        if now.step_s == 0.0 {
+            self.follower = now.contraction_ratio;
+        } else {
+            let followed = self.follower.clamp(now.contraction_ratio - HALF_PLAY, now.contraction_ratio + HALF_PLAY);
+            self.travelled += (followed - self.follower).abs();
+            self.follower = followed;
+        }
         columns[0] = base.latex_n() * (-below).exp_m1();
+        columns[1] = base.latex_n() * (-self.travelled / self.settling_travel).exp_m1();
     }
 }
 
 static PAGE: Page = Page {
     id: "mullins-softening",
     name: "Mullins softening of the bladder",
-    summary: "Rubber is softer where it has been stretched further before. The first inflation to a new contraction \
-              meets the full resistance of the bladder, and every later cycle below it meets less.",
-    equation: "F = F_base - d f (1 - exp(-(ε_m - ε) / ε_c)),  ε_m = largest contraction so far",
+    summary: "Rubber is softer where it has been stretched further before, and settles over its first cycles. The first \
+              inflation to a new contraction meets the full resistance of the bladder, and every later cycle below it \
+              meets less.",
+    equation: "F = F_base - d f (1 - exp(-(ε_m - ε) / ε_c)) - e f (1 - exp(-s / s_c)),  ε_m = largest contraction so far, \
+               s = ∫ |dε|",
     symbols: &[
         Symbol {
             symbol: "d",
@@ -81,11 +111,22 @@ static PAGE: Page = Page {
             meaning: "force of a bladder of latex, C₁₀ + C₀₁ = 0.22 MPa, whatever the fitted bladder is",
         },
         Symbol { symbol: "ε_m", unit: "1", meaning: "largest contraction since the recording began" },
+        Symbol { symbol: "e", unit: "1", meaning: "softening over the first cycles, in units of f; 0.02 to 0.3" },
+        Symbol {
+            symbol: "s_c",
+            unit: "1",
+            meaning: "travel of the contraction ratio in which 63 % of that are there: a few cycles, 0.2 to 3",
+        },
+        Symbol {
+            symbol: "s",
+            unit: "1",
+            meaning: "that travel since the recording began, counted outside a play of 0.001",
+        },
     ],
     validity: "A recording that begins with rubber fresh or rested for a day; what earlier recordings have softened \
                already does not show. No recovery within hours.",
     source: "Mullins (1948); Ogden and Roxburgh (1999), Proc. Royal Society A 455, simplified to one exponential over the \
-             contraction",
+             contraction; Diani, Fayolle and Gilormini (2009), European Polymer Journal 45, for the first cycles",
     signature: "The first cycle to each new contraction differs from the second at the same pressure and length, the \
                 later ones agree; the difference has the shape of the bladder's force and ignores the pressure.",
     confused_with: &[
@@ -118,7 +159,7 @@ mod tests {
 
     #[test]
     fn the_virgin_curve_is_untouched_and_the_way_back_softer() {
-        let mut memory = MullinsSoftening.start(&nominal(), &[0.03]);
+        let mut memory = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
         let mut at =
             |contraction_ratio| pull(&mut *memory, &Moment { step_s: 0.1, contraction_ratio, ..still() }, &base())[0];
         assert!(at(0.05).abs() < 1e-12 && at(0.1).abs() < 1e-12);
@@ -131,12 +172,29 @@ mod tests {
     }
 
     #[test]
+    fn the_first_cycles_settle_it_and_noise_at_rest_does_not() {
+        let mut memory = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        let mut at = |contraction_ratio, step_s| {
+            pull(&mut *memory, &Moment { step_s, contraction_ratio, ..still() }, &base())[1]
+        };
+        assert!(at(0.1, 0.0).abs() < 1e-12);
+        for index in 0..1000 {
+            assert!(at(0.1 + 4e-4 * f64::from(index % 2), 0.01).abs() < 1e-12);
+        }
+        // Five cycles of 0.1 there and back are twice the settling travel, but for the play.
+        let last_n = (0..10).map(|index| at(0.1 + 0.1 * f64::from((index + 1) % 2), 0.5)).last().expect("ten turns");
+        assert!((last_n / base().latex_n() - (-2.0_f64).exp_m1()).abs() < 5e-3, "{last_n}");
+        // A gap keeps what was travelled and counts nothing.
+        assert!((at(0.15, 0.0) - last_n).abs() < 1e-12);
+    }
+
+    #[test]
     fn a_gap_does_not_heal_it_and_a_new_recording_does() {
-        let mut memory = MullinsSoftening.start(&nominal(), &[0.03]);
+        let mut memory = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
         let low = Moment { contraction_ratio: 0.02, ..still() };
         pull(&mut *memory, &still(), &base());
         assert!(pull(&mut *memory, &low, &base())[0] > 10.0);
-        let mut fresh = MullinsSoftening.start(&nominal(), &[0.03]);
+        let mut fresh = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
         assert!(pull(&mut *fresh, &low, &base())[0].abs() < 1e-12);
     }
 }

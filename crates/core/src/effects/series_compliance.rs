@@ -1,7 +1,7 @@
 //! Series compliance: part of the recorded length is the stretch of the fixture.
 //!
 //! ```text
-//! L_m = L - c F
+//! L_m = L - c ln(1 + q F) / q
 //! ```
 //!
 //! In a simulation `F` is the force a moment ago, which settles where `c` times the stiffness of the muscle is
@@ -43,18 +43,24 @@ impl Effect for SeriesCompliance {
                 grid: &[1.25e-6, 2.5e-6, 5e-6, 1e-5, 2e-5, 4e-5],
             },
             Shape { name: "sliding_share", unit: "1", range: (0.0, 1.0), grid: &[0.0, 1.0] },
+            // Linear, and a cable that is twice as stiff under 100 N.
+            Shape { name: "hardening_per_n", unit: "1/N", range: (0.0, 0.1), grid: &[0.0, 0.01] },
         ]
     }
 
     fn start(&self, muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        let &[compliance_m_per_n, sliding_share] = shape else { unreachable!("two shape parameters") };
-        Box::new(State { compliance_m_per_n, sliding_share, rest_length_m: muscle.rest_length_m, last: None })
+        let &[compliance_m_per_n, sliding_share, hardening_per_n] = shape else {
+            unreachable!("three shape parameters")
+        };
+        let rest_length_m = muscle.rest_length_m;
+        Box::new(State { compliance_m_per_n, sliding_share, hardening_per_n, rest_length_m, last: None })
     }
 }
 
 struct State {
     compliance_m_per_n: f64,
     sliding_share: f64,
+    hardening_per_n: f64,
     rest_length_m: f64,
     /// Recording, slide in m, and direction of the muscle a moment ago.
     last: Option<(usize, f64, f64)>,
@@ -63,9 +69,18 @@ struct State {
 /// Travel of the muscle in which its friction turns over, in m: a few deviations of a length sensor, and about what strands take.
 const TURN_M: f64 = 1e-4;
 
+impl State {
+    /// Stretch of the fixture, in m, whose stiffness rises in proportion to `1 + q F` under tension; linear under compression.
+    fn stretch_m(&self, force_n: f64) -> f64 {
+        let hardened = self.hardening_per_n * force_n.max(0.0);
+        let softer = if hardened > 1e-9 { hardened.ln_1p() / hardened } else { 1.0 };
+        self.compliance_m_per_n * force_n * softer
+    }
+}
+
 impl Memory for State {
     fn sees(&mut self, now: &mut Moment) {
-        let stretch_m = self.compliance_m_per_n * now.force_n;
+        let stretch_m = self.stretch_m(now.force_n);
         now.length_m -= stretch_m;
         now.contraction_ratio += stretch_m / self.rest_length_m;
         now.slide_m += stretch_m;
@@ -86,7 +101,7 @@ static PAGE: Page = Page {
     name: "compliance of the fixture",
     summary: "Load cell, frame and cable stretch with the force, so the muscle is shorter than recorded. A muscle that \
               is held at its ends contracts a little as it pulls.",
-    equation: "F = F_base(p, L - c F)",
+    equation: "F = F_base(p, L - c ln(1 + q F) / q)",
     symbols: &[
         Symbol {
             symbol: "c",
@@ -99,9 +114,15 @@ static PAGE: Page = Page {
             meaning: "share of the stretch with which the strands slide: 1 where the muscle turns when its own length does, 0 \
                       where friction follows the recorded length",
         },
+        Symbol {
+            symbol: "q",
+            unit: "1/N",
+            meaning: "hardening: the stiffness is (1 + q F) / c, that of a cable or a thread that settles as it straightens; 0 \
+                      for a linear fixture, 0.002 to 0.05 for a cable",
+        },
         Symbol { symbol: "F", unit: "N", meaning: "force, as measured where it was measured" },
     ],
-    validity: "A linear fixture without play; slow against its own resonance. The speed is left as recorded.",
+    validity: "A fixture without play; slow against its own resonance. The speed is left as recorded.",
     source: "springs in series",
     signature: "The residual is static, and goes with the force times the stiffness of the muscle: largest at high \
                 pressure and small contraction, where the muscle seems too soft.",
@@ -139,16 +160,31 @@ mod tests {
         let muscle = nominal();
         let mut now = still();
         // 350 N on 50 N/mm.
-        SeriesCompliance.start(&muscle, &[2e-5, 1.0]).sees(&mut now);
+        SeriesCompliance.start(&muscle, &[2e-5, 1.0, 0.0]).sees(&mut now);
         assert!((now.length_m - 0.233).abs() < 1e-12);
         assert!((now.contraction_ratio - muscle.contraction_ratio(0.233)).abs() < 1e-12);
         assert!((now.slide_m - 0.034).abs() < 1e-12);
     }
 
     #[test]
+    fn a_cable_hardens_as_it_straightens() {
+        let stretch_m = |hardening_per_n, force_n| {
+            let mut now = Moment { force_n, ..still() };
+            SeriesCompliance.start(&nominal(), &[2e-5, 0.0, hardening_per_n]).sees(&mut now);
+            still().length_m - now.length_m
+        };
+        // 100 N on a cable of 50 N/mm that doubles its stiffness there: ln 2 of what a linear one gives.
+        assert!((stretch_m(0.01, 100.0) - 2e-3 * 2.0_f64.ln()).abs() < 1e-12);
+        let slope_m_per_n = (stretch_m(0.01, 100.5) - stretch_m(0.01, 99.5)) / 1.0;
+        assert!((slope_m_per_n / 1e-5 - 1.0).abs() < 1e-4);
+        assert!((stretch_m(1e-12, 100.0) - stretch_m(0.0, 100.0)).abs() < 1e-12);
+        assert!((stretch_m(0.01, -5.0) - stretch_m(0.0, -5.0)).abs() < 1e-15);
+    }
+
+    #[test]
     fn a_held_muscle_that_pulls_harder_turns_where_friction_follows_its_own_length() {
         for (sliding_share, expected) in [(1.0, 1.0), (0.5, 0.0), (0.0, -1.0)] {
-            let mut memory = SeriesCompliance.start(&nominal(), &[2e-5, sliding_share]);
+            let mut memory = SeriesCompliance.start(&nominal(), &[2e-5, sliding_share, 0.0]);
             let mut now = still();
             for force_n in [300.0, 301.0, 304.0, 310.0] {
                 now = Moment { force_n, direction: -1.0, ..still() };

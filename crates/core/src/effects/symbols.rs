@@ -3,7 +3,7 @@
 use crate::force::Parameter;
 
 /// Parameters of effects: id, name in artifacts, symbol.
-const OF_EFFECTS: [(&str, &str, &str); 50] = [
+const OF_EFFECTS: [(&str, &str, &str); 54] = [
     ("braid-lockup", "lock_contraction", "ε_l"),
     ("braid-lockup", "onset_contraction", "w"),
     ("braid-lockup", "stiffness_n", "K"),
@@ -24,6 +24,8 @@ const OF_EFFECTS: [(&str, &str, &str); 50] = [
     ("load-dependent-friction", "friction_per_load", "μΘ"),
     ("mullins-softening", "softening_contraction", "ε_c"),
     ("mullins-softening", "softening", "d"),
+    ("mullins-softening", "settling_travel", "s_c"),
+    ("mullins-softening", "settling", "e"),
     ("presliding-hysteresis", "slip_distance_m", "δ"),
     ("presliding-hysteresis", "slide_at_rest", "κ"),
     ("pressure-creep", "time_constant_s", "τ"),
@@ -40,6 +42,7 @@ const OF_EFFECTS: [(&str, &str, &str); 50] = [
     ("rubber-hysteresis", "width_n", "W"),
     ("series-compliance", "compliance_m_per_n", "c"),
     ("series-compliance", "sliding_share", "s"),
+    ("series-compliance", "hardening_per_n", "q"),
     ("slack", "floor_n", "F_floor"),
     ("slack", "softness_n", "w"),
     ("stribeck", "stribeck_speed_m_per_s", "v_s"),
@@ -47,6 +50,7 @@ const OF_EFFECTS: [(&str, &str, &str); 50] = [
     ("stribeck", "static_friction", "f_s"),
     ("thermal-softening", "time_constant_s", "τ"),
     ("thermal-softening", "softening_per_kilowatt", "d"),
+    ("thermal-softening", "softening_per_kelvin", "e"),
     ("threshold-pressure", "threshold_pa", "p_th"),
     ("viscoelastic-relaxation", "time_constant_s", "τ"),
     ("viscoelastic-relaxation", "overstress", "g₁"),

@@ -1,7 +1,7 @@
 //! Thermal softening: friction warms the bladder, and warm rubber is softer.
 //!
 //! ```text
-//! F = F_base - d f T,   τ dT/dt = P / P_ref - T,   P = p π D L |v|,   f = V_r dW/dL of latex
+//! F = F_base - d f T - e f θ,   τ dT/dt = P / P_ref - T,   P = p π D L |v|,   f = V_r dW/dL of latex
 //! ```
 
 use super::page::{Confusion, Page, Symbol};
@@ -15,6 +15,9 @@ const REFERENCE_W: f64 = 1e3;
 /// Softening by lasting work at `P_ref`, at most: friction of `f'` = 0.03 makes 30 W of it, a thin muscle in still air warms by
 /// 50 K per watt, rubber loses 0.8 % per kelvin, and a bladder may be three times as stiff as latex.
 const MOST: f64 = 40.0;
+
+/// Softening per kelvin of a logged temperature, at most: 0.8 % of a bladder three times as stiff as latex.
+const MOST_PER_K: f64 = 0.025;
 
 /// The effect.
 #[derive(Debug)]
@@ -38,7 +41,10 @@ impl Effect for ThermalSoftening {
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "softening_per_kilowatt", unit: "1", range: (-MOST, MOST) }]
+        &[
+            Amplitude { name: "softening_per_kilowatt", unit: "1", range: (-MOST, MOST) },
+            Amplitude { name: "softening_per_kelvin", unit: "1/K", range: (-MOST_PER_K, MOST_PER_K) },
+        ]
     }
 
     fn outlasts(&self) -> bool {
@@ -71,6 +77,7 @@ impl Memory for State {
         self.power = power;
         self.last_s = Some(now.time_s);
         columns[0] = -base.latex_n() * self.warmth;
+        columns[1] = -base.latex_n() * now.warmth_k;
     }
 }
 
@@ -78,8 +85,8 @@ static PAGE: Page = Page {
     id: "thermal-softening",
     name: "thermal softening of the bladder",
     summary: "Friction and hysteresis warm a muscle that works, over minutes, and its bladder resists less. Rest cools \
-              it down again.",
-    equation: "F = F_base - d f T,  τ dT/dt = P / P_ref - T,  P = p π D L |v|,  P_ref = 1 kW",
+              it down again. Where a temperature was logged, the bladder follows that as well.",
+    equation: "F = F_base - d f T - e f θ,  τ dT/dt = P / P_ref - T,  P = p π D L |v|,  P_ref = 1 kW",
     symbols: &[
         Symbol {
             symbol: "d",
@@ -99,8 +106,15 @@ static PAGE: Page = Page {
             unit: "1",
             meaning: "temperature above that at the start, in units of what P_ref ends at",
         },
+        Symbol {
+            symbol: "e",
+            unit: "1/K",
+            meaning: "softening per kelvin of the logged temperature, in units of f; 0.002 to 0.008, below zero for rubber \
+                      that stiffens; zero where none was logged",
+        },
+        Symbol { symbol: "θ", unit: "K", meaning: "logged temperature above 20 °C" },
     ],
-    validity: "A recording that begins cold, in surroundings of constant temperature; some kelvin, where the rubber \
+    validity: "A recording that begins cold, in surroundings of constant temperature or with a logged one; some kelvin, where the rubber \
                softens in proportion. Unfilled rubber may stiffen a little instead, which this leaves out.",
     source: "Doumit and Pardoel (2017) for the heat of working muscles; first-order balance of heat",
     signature: "Over minutes of cycling the force drifts upwards in proportion to the bladder's force, at every pressure \

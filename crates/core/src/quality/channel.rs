@@ -21,6 +21,10 @@ pub struct ChannelQuality {
     /// 0 in models that do not say.
     #[serde(default)]
     pub colored_noise: f64,
+    /// Standard deviation of averages over [`AVERAGED_S`] while the channel rests: what is left of noise that a moving average
+    /// does not take; 0 where it never rests, and in models that do not say.
+    #[serde(default)]
+    pub rest_noise: f64,
     /// Smallest step between values, where the channel has one.
     pub quantization_step: Option<f64>,
     /// Share of samples stuck at the lowest value, where the noise says that they should flicker.
@@ -44,6 +48,11 @@ impl ChannelQuality {
     /// Five times the noise, colored or not: by how much a channel must turn back before it counts as turned.
     pub fn play_threshold(&self) -> f64 {
         5.0 * self.any_noise()
+    }
+
+    /// What averages of the channel at rest wander within, from peak to peak; none where it never rests.
+    pub fn wanders_within(&self) -> Option<f64> {
+        (self.rest_noise > 0.0).then_some(PEAK_TO_PEAK * self.rest_noise)
     }
 }
 
@@ -112,13 +121,83 @@ pub fn colored_noise_std(values: &[f64], period_s: f64) -> Option<f64> {
     if n < LEAST_IN_WINDOW { None } else { quiet_std(values, n) }
 }
 
-/// Standard deviation of what a cubic leaves of `n` values in a row, in the quietest fifth of the windows, corrected for that
-/// choice. None where there is no window.
-fn quiet_std(values: &[f64], n: usize) -> Option<f64> {
-    if values.len() < n {
-        return None;
+/// Times the white part that noise within [`WITHIN_S`] must have to be called colored.
+const COLORED: f64 = 1.15;
+
+/// Standard deviation of noise, however long its values share it: that of a first-order autoregression whose second differences
+/// show `noise`, and whose windows of [`WITHIN_S`] show `colored` beside a cubic. Noise that is white stays what it is.
+pub fn whole_noise_std(noise: f64, colored: f64, period_s: f64) -> f64 {
+    let n = (WITHIN_S / period_s).round() as usize;
+    if n < LEAST_IN_WINDOW || !(noise > 0.0 && colored > COLORED * noise) {
+        return colored.max(noise);
     }
-    // Orthonormal polynomials over a window.
+    let basis = cubic(n);
+    // What white differences and the quietest fifth of the windows show of a noise of one, of which neighbors share so much.
+    let shares = |shared: f64| {
+        let second_differences = (6.0 - 8.0 * shared + 2.0 * shared * shared) / 6.0;
+        let (trace, square) = beside_cubic(&basis, shared);
+        let freedom = (n - CUBIC) as f64;
+        let quiet = quiet_share(trace * trace / square) / quiet_share(freedom);
+        [second_differences, quiet * trace / freedom]
+    };
+    let wanted = (colored / noise).powi(2);
+    // The ratio rises with what neighbors share.
+    let (mut low, mut high) = (0.0, MOST_SHARED);
+    for _ in 0..20 {
+        let middle = 0.5 * (low + high);
+        let [white, within] = shares(middle);
+        if within / white < wanted { low = middle } else { high = middle }
+    }
+    (noise / shares(low)[0].sqrt()).min(MOST_BEYOND * colored)
+}
+
+/// Trace, and trace of the square, of the covariance of what the columns of `basis` leave of a first-order autoregression of
+/// variance one, of which neighbors share `shared`.
+fn beside_cubic(basis: &[Vec<f64>], shared: f64) -> (f64, f64) {
+    let n = basis[0].len();
+    let powers: Vec<f64> = (0..n)
+        .scan(1.0, |power, _| {
+            let here = *power;
+            *power *= shared;
+            Some(here)
+        })
+        .collect();
+    let covariance = |row: usize, column: usize| powers[row.abs_diff(column)];
+    // (1 - P) C (1 - P) with P = Σ q qᵀ: the columns C q, and qᵀ C q between them.
+    let seen: Vec<Vec<f64>> = basis
+        .iter()
+        .map(|q| (0..n).map(|row| (0..n).map(|column| covariance(row, column) * q[column]).sum()).collect())
+        .collect();
+    let between = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(left, right)| left * right).sum::<f64>();
+    let core: Vec<Vec<f64>> = basis.iter().map(|q| seen.iter().map(|seen| between(q, seen)).collect()).collect();
+    let (mut trace, mut square) = (0.0, 0.0);
+    for row in 0..n {
+        for column in 0..=row {
+            let mut value = covariance(row, column);
+            for (k, q) in basis.iter().enumerate() {
+                value -= q[row] * seen[k][column] + seen[k][row] * q[column];
+                for (l, other) in basis.iter().enumerate() {
+                    value += q[row] * core[k][l] * other[column];
+                }
+            }
+            if row == column {
+                trace += value;
+                square += value * value;
+            } else {
+                square += 2.0 * value * value;
+            }
+        }
+    }
+    (trace, square)
+}
+
+/// Times what windows of [`WITHIN_S`] show that noise can be told to have: what it shares for longer, they hardly see.
+const MOST_BEYOND: f64 = 1.75;
+/// Most that neighbors share of a noise that any recording tells from a signal.
+const MOST_SHARED: f64 = 0.98;
+
+/// Orthonormal polynomials up to a cubic over `n` values.
+fn cubic(n: usize) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(CUBIC);
     for degree in 0..CUBIC as i32 {
         let mut column: Vec<f64> = (0..n).map(|at| (2.0 * at as f64 / (n - 1) as f64 - 1.0).powi(degree)).collect();
@@ -130,8 +209,18 @@ fn quiet_std(values: &[f64], n: usize) -> Option<f64> {
         column.iter_mut().for_each(|value| *value /= size);
         basis.push(column);
     }
+    basis
+}
+
+/// Standard deviation of what a cubic leaves of `n` values in a row, in the quietest fifth of the windows, corrected for that
+/// choice. None where there is no window.
+fn quiet_std(values: &[f64], n: usize) -> Option<f64> {
+    if values.len() < n {
+        return None;
+    }
+    let basis = cubic(n);
     let freedom = (n - CUBIC) as f64;
-    let mut variances: Vec<f64> = values
+    let variances: Vec<f64> = values
         .chunks_exact(n)
         .map(|window| {
             let mean = window.iter().sum::<f64>() / n as f64;
@@ -146,10 +235,56 @@ fn quiet_std(values: &[f64], n: usize) -> Option<f64> {
             (squares - fitted).max(0.0) / freedom
         })
         .collect();
-    let place = (QUIET * (variances.len() - 1) as f64).round() as usize;
+    quiet_fifth(variances, freedom)
+}
+
+/// Standard deviation where the quietest fifth of `variances` ends, each of so many degrees of `freedom`, corrected for that
+/// choice as if the values were independent (Wilson and Hilferty's approximation of χ²). None where there are none.
+fn quiet_fifth(mut variances: Vec<f64>, freedom: f64) -> Option<f64> {
+    let place = (QUIET * variances.len().checked_sub(1)? as f64).round() as usize;
     let quiet = *variances.select_nth_unstable_by(place, f64::total_cmp).1;
+    Some((quiet / quiet_share(freedom)).sqrt())
+}
+
+/// Where the quietest fifth of means of so many independent squares ends, in units of their mean.
+fn quiet_share(freedom: f64) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
-    Some((quiet / (1.0 - spread + QUIET_NORMAL * spread.sqrt()).powi(3)).sqrt())
+    (1.0 - spread + QUIET_NORMAL * spread.sqrt()).powi(3)
+}
+
+/// Over what a channel is averaged before its direction is read, in s.
+pub const AVERAGED_S: f64 = 0.05;
+/// From peak to peak, in standard deviations, what a thousand independent normal values span at most but once in twenty.
+const PEAK_TO_PEAK: f64 = 8.0;
+/// Time that a rest is looked for in, in s: longer than noise remembers.
+const RESTING_S: f64 = 1.0;
+/// Times the noise that a channel at rest wanders by at most; a motion is a hundred times faster.
+const RESTS_WITHIN: f64 = 4.0;
+
+/// Standard deviation of averages over [`AVERAGED_S`] around a line within [`RESTING_S`], in the quietest fifth of the windows
+/// and corrected for that choice. None where the channel does not rest there to within some times its `noise`.
+pub fn rest_noise_std(values: &[f64], period_s: f64, noise: f64) -> Option<f64> {
+    let averaged = ((AVERAGED_S / period_s).round() as usize).max(1);
+    let means: Vec<f64> =
+        values.chunks_exact(averaged).map(|part| part.iter().sum::<f64>() / averaged as f64).collect();
+    let n = (RESTING_S / (averaged as f64 * period_s)).round() as usize;
+    if n < LEAST_IN_WINDOW {
+        return None;
+    }
+    let variance = |window: &[f64]| {
+        let middle = 0.5 * (n - 1) as f64;
+        let mean = window.iter().sum::<f64>() / n as f64;
+        let (mut rise, mut spread, mut squares) = (0.0, 0.0, 0.0);
+        for (at, value) in window.iter().enumerate() {
+            let place = at as f64 - middle;
+            rise += place * value;
+            spread += place * place;
+            squares += (value - mean).powi(2);
+        }
+        (squares - rise * rise / spread).max(0.0) / (n - 2) as f64
+    };
+    let rest = quiet_fifth(means.chunks_exact(n).map(variance).collect(), (n - 2) as f64)?;
+    (rest < RESTS_WITHIN * noise).then_some(rest)
 }
 
 /// The step of a quantized channel: the smallest distance between two of its values, if all distances are
@@ -291,7 +426,36 @@ mod tests {
             .collect();
         let whole = 0.2 / (1.0_f64 - 0.81).sqrt();
         let found = colored_noise_std(&colored, period_s).unwrap();
+        let inferred = whole_noise_std(noise_std(&colored), found, period_s);
+        assert!((0.9..1.1).contains(&(inferred / whole)), "{inferred} of {whole}");
+        assert_eq!(whole_noise_std(0.2, 0.21, period_s), 0.21);
         assert!(noise_std(&colored) < 0.45 * whole && found > 0.5 * whole, "{found} of {whole}");
         assert_eq!(colored_noise_std(&white, 0.1), None);
+    }
+
+    #[test]
+    fn noise_that_neighbors_share_for_long_is_found_where_the_channel_rests() {
+        let normal = Normal::new(0.0, 1.0).unwrap();
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(8);
+        let mut state = 0.0;
+        // 150 Hz; 10 s at rest and 10 s of a fast ramp in turn; a deviation of 3.2 that is shared over 130 ms.
+        let values: Vec<f64> = (0..9000)
+            .map(|at| {
+                state = 0.95 * state + normal.sample(&mut generator);
+                let moved = f64::from(at % 3000 - 1500).max(0.0) * 10.0;
+                state + moved
+            })
+            .collect();
+        let period_s = 1.0 / 150.0;
+        let colored = colored_noise_std(&values, period_s).unwrap();
+        let found = rest_noise_std(&values, period_s, colored).unwrap();
+        // 2.9 of averages, less a quarter: the quietest windows are taken for those of independent values.
+        assert!(colored < 1.2 && (2.0..3.0).contains(&found), "{colored} {found}");
+        // White noise is averaged out, and what always moves says nothing.
+        let white: Vec<f64> = (0..9000).map(|_| normal.sample(&mut generator)).collect();
+        let found = rest_noise_std(&white, period_s, 1.0).unwrap();
+        assert!((0.3..0.42).contains(&found), "{found}");
+        let moving: Vec<f64> = (0..9000).map(|at| 1e3 * (0.02 * f64::from(at)).sin()).collect();
+        assert_eq!(rest_noise_std(&moving, period_s, 0.1), None);
     }
 }

@@ -6,7 +6,9 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::channel::{ChannelQuality, SAMPLE_ROWS, StuckCounter, colored_noise_std, noise_std, quantization_step};
+use super::channel::{
+    ChannelQuality, SAMPLE_ROWS, StuckCounter, colored_noise_std, noise_std, quantization_step, rest_noise_std,
+};
 use crate::recording::{Chunk, Recording, Repairs};
 
 /// What a recording looks like before anything is fitted to it; SI throughout.
@@ -139,6 +141,12 @@ fn channel(
     // A channel at rest between two steps shows no noise at all, and yet is known to a step only.
     let [noise, colored_noise] =
         [flicker, colored].map(|noise| step.map_or(noise, |step| noise.max(step / 12.0_f64.sqrt())));
+    let rests: Vec<f64> = sample
+        .chunks
+        .iter()
+        .filter_map(|chunk| rest_noise_std(column(chunk), sample.period_s, noise.max(colored_noise)))
+        .collect();
+    let rest_noise = rests.iter().copied().reduce(f64::min).unwrap_or(0.0);
     let mut shares = (0.0, 0.0);
     // Only a channel that flickers between its steps can be told to be stuck.
     if highest > lowest && step.is_none_or(|step| flicker > 0.5 * step) {
@@ -156,6 +164,7 @@ fn channel(
         highest,
         noise,
         colored_noise,
+        rest_noise,
         quantization_step: step,
         clipped_low_share: shares.0,
         clipped_high_share: shares.1,

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#define COLUMNS 15
+#define COLUMNS 16
 #define LINE 1024
 
 /* The fields of pam_moment in their order, then the force, in N. */
@@ -44,14 +44,15 @@ static void check(checked *c, const double *row)
     now.slide_m = row[11];
     now.rest_slide_m = row[12];
     now.force_n = row[13];
-    difference_n = fabs(pam_step(&c->state, &now) - row[14]);
+    now.warmth_k = row[14];
+    difference_n = fabs(pam_step(&c->state, &now) - row[15]);
     if (!(difference_n <= c->largest_n)) {
         c->largest_n = difference_n;
     }
     now = pam_observe(&c->observer, row[1], row[2], row[4]);
     c->n_turned += fabs(now.direction - row[9]) > 0.5;
     now.force_n = pam_own_force_n(&c->causal_state, &now);
-    difference_n = pam_step(&c->causal_state, &now) - row[14];
+    difference_n = pam_step(&c->causal_state, &now) - row[15];
     c->causal_square_sum += difference_n * difference_n;
     c->n++;
 }

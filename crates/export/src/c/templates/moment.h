@@ -15,4 +15,5 @@ typedef struct {
     double slide_m;                /* travel of the braid, rising while it contracts */
     double rest_slide_m;           /* the part of it that pressure has made at rest */
     double force_n;                /* measured, smooth; pam_own_force_n where it is not measured */
+    double warmth_k;               /* logged temperature above 20 C; 0 where none is logged */
 } pam_moment;

@@ -6,7 +6,9 @@ typedef struct {
 static inline void pam_series_compliance_sees(pam_series_compliance *memory, pam_moment *now)
 {
     const double turn_m = 1e-4;
-    const double stretch_m = PAM_SERIES_COMPLIANCE_COMPLIANCE_M_PER_N * now->force_n;
+    const double hardened = PAM_SERIES_COMPLIANCE_HARDENING_PER_N * fmax(now->force_n, 0.0);
+    const double softer = hardened > 1e-9 ? log1p(hardened) / hardened : 1.0;
+    const double stretch_m = PAM_SERIES_COMPLIANCE_COMPLIANCE_M_PER_N * now->force_n * softer;
     double turned = now->direction;
     now->length_m -= stretch_m;
     now->contraction_ratio += stretch_m / PAM_REST_LENGTH_M;

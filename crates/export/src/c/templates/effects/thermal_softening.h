@@ -16,5 +16,7 @@ static inline double pam_thermal_softening_pulls(pam_thermal_softening *memory, 
     memory->started = 1;
     memory->time_s = now->time_s;
     memory->power = power;
-    return -pam_latex_n(base) * memory->warmth * PAM_THERMAL_SOFTENING_SOFTENING_PER_KILOWATT;
+    return -pam_latex_n(base)
+           * (memory->warmth * PAM_THERMAL_SOFTENING_SOFTENING_PER_KILOWATT
+              + now->warmth_k * PAM_THERMAL_SOFTENING_SOFTENING_PER_KELVIN);
 }
