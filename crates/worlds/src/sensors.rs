@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 
 use crate::draw::Dice;
-use crate::forms::{Channel, Delay};
+use crate::forms::{Channel, Delay, Lateness};
 use crate::muscle::StaticForce;
 use crate::simulate::Trace;
 
@@ -21,6 +21,12 @@ pub enum Color {
     OneOverF,
     /// White, with mains hum of this share of the power.
     Hum(f64),
+    /// Student's distribution with four degrees of freedom: white, with outliers.
+    Heavy,
+    /// Half white, half a frame that rings at this frequency in Hz with this damping ratio.
+    Ringing(f64, f64),
+    /// White, with the first, third and fifth harmonic of 60 Hz of this share of the power.
+    Harmonics(f64),
 }
 
 impl Color {
@@ -31,11 +37,19 @@ impl Color {
             Self::Ar1(_) => "ar1",
             Self::OneOverF => "one-over-f",
             Self::Hum(_) => "mains-hum",
+            Self::Heavy => "heavy-tails",
+            Self::Ringing(..) => "ringing-frame",
+            Self::Harmonics(_) => "mains-harmonics",
         }
     }
 
     /// Noise of deviation 1.
     fn series(self, count: usize, period_s: f64, dice: &mut Dice) -> Vec<f64> {
+        match self {
+            Self::Heavy => return (0..count).map(|_| student(dice)).collect(),
+            Self::Ringing(hz, ratio) => return ringing(hz, ratio, count, period_s, dice),
+            _ => {}
+        }
         let mut first_order = |correlation: f64| -> Vec<f64> {
             let scale = (1.0 - correlation * correlation).sqrt();
             let mut value = dice.normal();
@@ -60,8 +74,48 @@ impl Color {
                 let wave = |index: usize| (TAU * hz * index as f64 * period_s + phase).sin();
                 white.iter().enumerate().map(|(index, value)| rest * value + hum * wave(index)).collect()
             }
+            Self::Harmonics(share) => {
+                let white = first_order(0.0);
+                let hz = 60.0 + dice.uniform(-0.05, 0.05);
+                let lines = [(1.0, 0.7), (3.0, 0.2), (5.0, 0.1)].map(|(order, part): (f64, f64)| {
+                    (TAU * hz * order * period_s, (2.0 * share * part).sqrt(), dice.uniform(0.0, TAU))
+                });
+                let wave = |index: usize| -> f64 {
+                    lines.iter().map(|(step, size, phase)| size * (step * index as f64 + phase).sin()).sum()
+                };
+                let rest = (1.0 - share).sqrt();
+                white.iter().enumerate().map(|(index, value)| rest * value + wave(index)).collect()
+            }
+            Self::Heavy | Self::Ringing(..) => Vec::new(),
         }
     }
+}
+
+/// Student's distribution with four degrees of freedom, brought to deviation 1 and cut at six.
+fn student(dice: &mut Dice) -> f64 {
+    let value = dice.normal();
+    let chi_square: f64 = (0..4).map(|_| dice.normal().powi(2)).sum();
+    (value / (0.25 * chi_square).sqrt() / 2f64.sqrt()).clamp(-6.0, 6.0)
+}
+
+/// White noise, and as much of a second order that it shakes (an autoregression with the frame's poles).
+fn ringing(hz: f64, ratio: f64, count: usize, period_s: f64, dice: &mut Dice) -> Vec<f64> {
+    // Beyond half of the sampling rate a frame would be seen at another frequency.
+    let natural = TAU * hz.min(0.35 / period_s);
+    let radius = (-ratio * natural * period_s).exp();
+    let angle = natural * period_s * (1.0 - ratio * ratio).sqrt();
+    let (first, second) = (2.0 * radius * angle.cos(), -radius * radius);
+    // Variance of the autoregression (Box and Jenkins 1970).
+    let variance = (1.0 - second) / ((1.0 + second) * ((1.0 - second).powi(2) - first * first));
+    let scale = (0.5 / variance).sqrt();
+    let (mut last, mut before) = (dice.normal() * variance.sqrt(), dice.normal() * variance.sqrt());
+    (0..count)
+        .map(|_| {
+            let next = first * last + second * before + dice.normal();
+            (before, last) = (last, next);
+            scale * next + 0.5f64.sqrt() * dice.normal()
+        })
+        .collect()
 }
 
 /// One channel's sensor. Units are SI.
@@ -83,11 +137,20 @@ pub struct Sensor {
     pub bits: u32,
     /// Time constant of the anti-alias filter, s; 0 for none.
     pub filter_s: f64,
+    /// Order of that filter: so many first orders in series.
+    pub filter_order: usize,
+    /// Bow of the characteristic at half of the full scale, as a share of it.
+    pub bow: f64,
 }
 
 impl Sensor {
     fn calibrated(&self, value: f64) -> f64 {
-        self.pivot + self.gain * (value - self.pivot) + self.zero
+        let straight = self.pivot + self.gain * (value - self.pivot) + self.zero;
+        if self.bow == 0.0 {
+            return straight;
+        }
+        let share = value / self.full_scale;
+        straight + 4.0 * self.bow * self.full_scale * share * (1.0 - share)
     }
 
     fn quantized(&self, value: f64) -> f64 {
@@ -100,14 +163,15 @@ impl Sensor {
             return values.to_vec();
         }
         let keep = (-dt_s / self.filter_s).exp();
-        let mut state = values[0];
-        values
-            .iter()
-            .map(|&value| {
-                state = keep * state + (1.0 - keep) * value;
-                state
-            })
-            .collect()
+        let mut filtered = values.to_vec();
+        for _ in 0..self.filter_order {
+            let mut state = filtered[0];
+            for value in &mut filtered {
+                state = keep * state + (1.0 - keep) * *value;
+                *value = state;
+            }
+        }
+        filtered
     }
 }
 
@@ -130,6 +194,10 @@ pub struct Sensors {
     pub stamps_show_jitter: bool,
     /// Gaps in the log per recording.
     pub gaps: usize,
+    /// Share of the samples that are lost one by one.
+    pub lost: f64,
+    /// Step of the stamps, s; 0 where they have as many digits as the file.
+    pub stamp_step_s: f64,
 }
 
 /// A recording as logged, and what a perfect load cell would have logged.
@@ -165,10 +233,14 @@ fn at(values: &[f64], place: f64) -> f64 {
 /// What a delay is at a time, s.
 fn late_s(delay: Option<Delay>, channel: Channel, time_s: f64) -> f64 {
     match delay {
-        Some(delay) if delay.channel == channel => {
-            let wander = (1.7 * time_s).sin() + (0.61 * time_s + 1.0).sin() + (4.3 * time_s + 2.0).sin();
-            (delay.delay_s * (1.0 + delay.jitter * wander / 1.5)).max(0.0)
-        }
+        Some(delay) if delay.channel == channel => match delay.lateness {
+            Lateness::Wandering(share) => {
+                let wander = (1.7 * time_s).sin() + (0.61 * time_s + 1.0).sin() + (4.3 * time_s + 2.0).sin();
+                (delay.delay_s * (1.0 + share * wander / 1.5)).max(0.0)
+            }
+            Lateness::Growing { per_s } => 0.5 * delay.delay_s + per_s * time_s,
+            Lateness::Polled { period_s } => 0.5 * delay.delay_s + time_s.rem_euclid(period_s),
+        },
         _ => 0.0,
     }
 }
@@ -200,6 +272,9 @@ impl Sensors {
             let to = (from + length as usize).min(count - 1);
             keep[from..to].fill(false);
         }
+        if self.lost > 0.0 {
+            keep[1..].iter_mut().for_each(|keep| *keep &= !dice.chance(self.lost));
+        }
         if noisy {
             noise_of = [noise(&self.pressure, dice), noise(&self.length, dice), noise(&self.force, dice)];
         }
@@ -224,7 +299,12 @@ impl Sensors {
             log.true_force_n.push(force_n);
             log.true_inputs.push((pressure_pa, length_m));
             log.state.push(at(&trace.state, instant_s / dt_s));
-            log.time_s.push(if self.stamps_show_jitter { instant_s } else { time_s });
+            let stamp_s = if self.stamps_show_jitter { instant_s } else { time_s };
+            log.time_s.push(if self.stamp_step_s > 0.0 {
+                (stamp_s / self.stamp_step_s).round() * self.stamp_step_s
+            } else {
+                stamp_s
+            });
             if !noisy {
                 continue;
             }
@@ -253,16 +333,18 @@ mod tests {
 
     #[test]
     fn every_color_has_the_deviation_it_was_asked_for() {
-        for color in [Color::White, Color::Ar1(0.8), Color::OneOverF, Color::Hum(0.5)] {
+        let (heavy, ringing) = (Color::Heavy, Color::Ringing(18.0, 0.05));
+        for color in
+            [Color::White, Color::Ar1(0.8), Color::OneOverF, Color::Hum(0.5), heavy, ringing, Color::Harmonics(0.4)]
+        {
             let series = color.series(20_000, 0.004, &mut Dice::new(1, 9));
             let power = series.iter().map(|value| value * value).sum::<f64>() / 20_000.0;
             assert!((0.8..1.25).contains(&power), "{color:?}: {power}");
         }
     }
 
-    #[test]
-    fn readings_are_whole_steps() {
-        let sensor = Sensor {
+    fn sensor() -> Sensor {
+        Sensor {
             full_scale: 1000.0,
             noise: 0.1,
             color: Color::White,
@@ -271,8 +353,24 @@ mod tests {
             zero: 0.0,
             bits: 10,
             filter_s: 0.0,
-        };
-        let reading = sensor.quantized(123.4) / (1000.0 / 1024.0);
+            filter_order: 1,
+            bow: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_bow_is_nothing_at_both_ends_and_a_filter_of_second_order_arrives_later() {
+        let bowed = Sensor { bow: 1e-3, ..sensor() };
+        assert!(bowed.calibrated(0.0).abs() < 1e-12 && (bowed.calibrated(1000.0) - 1000.0).abs() < 1e-9);
+        assert!((bowed.calibrated(500.0) - 501.0).abs() < 1e-9);
+        let steps: Vec<f64> = (0..100).map(|index| if index < 10 { 0.0 } else { 1.0 }).collect();
+        let after = |filter_order| Sensor { filter_s: 5e-3, filter_order, ..sensor() }.filtered(&steps, 1e-3);
+        assert!(after(2)[14] < after(1)[14] && after(2)[99] > 0.99);
+    }
+
+    #[test]
+    fn readings_are_whole_steps() {
+        let reading = sensor().quantized(123.4) / (1000.0 / 1024.0);
         assert!((reading - reading.round()).abs() < 1e-9);
     }
 }
