@@ -355,7 +355,7 @@ impl World {
         let fastest_m_per_s = if demands.slow { dice.uniform(0.06, 0.1) } else { dice.uniform(0.03, 0.1) };
         let taut = taut(&force, &friction, &muscle, margin_n);
         let deepest = taut.iter().copied().fold(0.0, f64::max);
-        let region = Region {
+        let mut region = Region {
             least: taut[0].clamp(-0.008, -0.001),
             most: (deepest * dice.uniform(0.8, 0.97)).min(0.27),
             taut,
@@ -365,9 +365,17 @@ impl World {
             fastest_m_per_s,
             highest_hz: if demands.fast { dice.uniform(4.0, 9.0) } else { dice.log_uniform(1.0, 8.0) },
             bandwidths_hz: (dice.uniform(6.0, 20.0), dice.uniform(2.5, 10.0)),
+            regulator: None,
+            hang: None,
         };
         if region.most < 0.06 {
             return Err(Unmade::NoStroke);
+        }
+        if is_sealed {
+            region.regulator = sealed::world::draw_regulator(dice);
+            let load = sealed::world::draw_load(dice, &force, &muscle, &region);
+            let lifted = self::taut(&force, &friction, &muscle, load.weight_n);
+            region.hang = Some((load, lifted));
         }
         let caliper = if is_sealed {
             sealed::world::draw_caliper(dice)

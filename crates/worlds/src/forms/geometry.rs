@@ -94,7 +94,7 @@ impl Mechanism for Ends {
     }
 }
 
-pub(crate) fn ends(setting: &Setting, scale: f64, lost_m3: impl Fn(f64, f64) -> f64) -> Built {
+fn ends(setting: &Setting, scale: f64, lost_m3: impl Fn(f64, f64) -> f64) -> Built {
     let muscle = &setting.muscle;
     let lost = |length_m: f64| lost_m3(2.0 * muscle.cylinder_radius_m(length_m), 2.0 * muscle.rest_radius_m);
     let step_m = 1e-5 * muscle.rest_length_m;

@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use crate::draw::Dice;
-use crate::forms::geometry::ends;
+use crate::forms::geometry::softplus;
 use crate::forms::memory::error_function;
 use crate::forms::{Built, Setting, size};
 use crate::mechanism::{Mechanism, Moment};
+use crate::muscle::Muscle;
 
 /// A bladder that meets the braid in more and more places as the pressure `p` grows: the share `H(p)` of the braid carries what
 /// is added, so that `p_eff = ∫ H dp`.
@@ -48,10 +49,43 @@ pub fn threshold_exponential(_: &mut Dice, u: f64, _: &Setting) -> Built {
     contact(Contact::Exponential(threshold_pa), threshold_pa, threshold_pa * 10f64.ln())
 }
 
-/// Conical ends of a fixed axial length, 3 to 12 mm each, on which the braid is bound (Doumit and Leclair).
-pub fn taper_bound(_: &mut Dice, u: f64, setting: &Setting) -> Built {
+/// Ends that taper over a fixed axial length once the muscle is wider than its ferrules: `ΔF = p dV_lost/dL`.
+#[derive(Debug)]
+struct Ferrules {
+    muscle: Muscle,
+    cone_m: f64,
+    /// Diameter of the ferrules, and the width of the edge, m.
+    ferrule_m: f64,
+    edge_m: f64,
+}
+
+impl Ferrules {
+    /// Volume that is lost at a length, m³.
+    fn lost_m3(&self, length_m: f64) -> f64 {
+        let wide_m = 2.0 * self.muscle.cylinder_radius_m(length_m);
+        lost_m3(self.cone_m, self.ferrule_m + softplus(wide_m - self.ferrule_m, self.edge_m), self.ferrule_m)
+    }
+}
+
+impl Mechanism for Ferrules {
+    fn added_n(&mut self, now: &Moment) -> f64 {
+        let step_m = 1e-5;
+        let slope_m2 = (self.lost_m3(now.length_m + step_m) - self.lost_m3(now.length_m - step_m)) / (2.0 * step_m);
+        now.pressure_pa * slope_m2
+    }
+}
+
+/// Ends of 3 to 12 mm each that taper from ferrules which are wider than the muscle at rest.
+pub fn taper_ferrules(dice: &mut Dice, u: f64, setting: &Setting) -> Built {
+    let muscle = setting.muscle.clone();
     let cone_m = size(u, 3e-3, 12e-3);
-    ends(setting, cone_m, |wide_m, narrow_m| lost_m3(cone_m, wide_m, narrow_m)).with("cone_mm", 1e3 * cone_m)
+    let from = setting.contraction_at(dice.uniform(0.3, 0.65));
+    let ferrule_m = 2.0 * muscle.cylinder_radius_m(muscle.rest_length_m * (1.0 - from));
+    let edge_m = dice.uniform(1e-4, 3e-4);
+    Built::one(Ferrules { muscle, cone_m, ferrule_m, edge_m })
+        .with("cone_mm", 1e3 * cone_m)
+        .with("ferrule_mm", 1e3 * ferrule_m)
+        .with("from_contraction", from)
 }
 
 /// Volume between a cylinder and two cones of one axial length, m³.
@@ -197,6 +231,19 @@ mod tests {
         assert!(lost_m3(0.01, 0.02, 0.02).abs() < 1e-18);
         let lost = lost_m3(0.01, 0.03, 0.02);
         assert!(lost > 0.0 && lost < 2.0 * 0.01 * PI * 0.015 * 0.015);
+    }
+
+    #[test]
+    fn ends_taper_only_beyond_their_ferrules_and_then_take_force() {
+        let muscle = Muscle::draw(&mut Dice::new(5, 5));
+        let ferrule_m = 2.0 * muscle.cylinder_radius_m(0.9 * muscle.rest_length_m);
+        let rest_m = muscle.rest_length_m;
+        let mut ends = Ferrules { muscle, cone_m: 8e-3, ferrule_m, edge_m: 1e-4 };
+        let mut at = |contraction: f64| {
+            ends.added_n(&Moment { length_m: rest_m * (1.0 - contraction), pressure_pa: 3e5, ..Moment::default() })
+        };
+        assert!(at(0.02).abs() < 1e-3, "{}", at(0.02));
+        assert!(at(0.18) < -2.0 && at(0.18) > -100.0, "{}", at(0.18));
     }
 
     #[test]

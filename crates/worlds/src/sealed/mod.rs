@@ -20,7 +20,7 @@ pub mod world;
 
 const TURNS: &[Kind] = &[Kind::DwelledSines, Kind::QuickRelease, Kind::HandHeld, Kind::RandomSteps];
 const SPEEDS: &[Kind] = &[Kind::DwelledSines, Kind::GaitCycles, Kind::QuickRelease];
-const LOADS: &[Kind] = &[Kind::GrowingSpiral, Kind::GaitCycles, Kind::RandomSteps];
+const LOADS: &[Kind] = &[Kind::GrowingSpiral, Kind::GaitCycles, Kind::LoadedHang];
 const HOLDS: &[Kind] = &[Kind::RandomSteps, Kind::QuickRelease];
 const PRESSURE_HOLDS: &[Kind] = &[Kind::Staircase, Kind::RandomSteps];
 const STROKES: &[Kind] = &[Kind::GrowingSpiral, Kind::QuickRelease, Kind::GaitCycles];
@@ -65,7 +65,7 @@ pub const NAMED: &[Form] = &[
     slowly("fatigue-wear", "half-cycles", slow::wear_miner, STROKES),
     of("threshold-pressure", "rayleigh-contact", geometry::threshold_rayleigh, RAMPS),
     of("threshold-pressure", "exponential-contact", geometry::threshold_exponential, RAMPS),
-    of("end-taper", "bound-cones", geometry::taper_bound, STROKES),
+    of("end-taper", "wide-ferrules", geometry::taper_ferrules, STROKES),
     of("end-taper", "factor-of-pressure", geometry::taper_factor, STROKES),
     of("braid-lockup", "contact", geometry::lock_up_contact, STROKES),
     of("braid-lockup", "pressed", geometry::lock_up_pressed, STROKES),

@@ -6,7 +6,7 @@ use crate::draw::Dice;
 use crate::protocol::{Kind, Writer, contractions, pressures};
 
 /// Kinds of the third part.
-pub const KINDS: [Kind; 7] = [
+pub const KINDS: [Kind; 8] = [
     Kind::Staircase,
     Kind::DwelledSines,
     Kind::GaitCycles,
@@ -14,6 +14,7 @@ pub const KINDS: [Kind; 7] = [
     Kind::QuickRelease,
     Kind::GrowingSpiral,
     Kind::HandHeld,
+    Kind::LoadedHang,
 ];
 
 /// Writes a recording of one of [`KINDS`].
@@ -26,6 +27,7 @@ pub(crate) fn write(kind: Kind, writer: &mut Writer, dice: &mut Dice, duration_s
         Kind::RandomSteps => random_steps(writer, dice),
         Kind::QuickRelease => quick_release(writer, dice, parts, duration_s),
         Kind::GrowingSpiral => growing_spiral(writer, dice, duration_s),
+        Kind::LoadedHang => loaded_hang(writer, dice, duration_s),
         _ => hand_held(writer, dice),
     }
 }
@@ -180,6 +182,37 @@ fn growing_spiral(writer: &mut Writer, dice: &mut Dice, duration_s: f64) {
         let pressure_pa = middle_pa + half_pa * size * (TAU * of_pressure_hz * time_s).sin();
         let contraction = 0.5 * (low + high) - 0.5 * (high - low) * size * (TAU * of_length_hz * time_s).cos();
         writer.push(pressure_pa, contraction);
+    }
+}
+
+/// Pressure up and down in ramps with stops on the way, while a weight hangs; the length written is about where it will be.
+fn loaded_hang(writer: &mut Writer, dice: &mut Dice, duration_s: f64) {
+    let region = writer.region;
+    let steps = 60;
+    // From where the weight leaves its stop.
+    let from_pa = (1..steps)
+        .map(|step| region.highest_pa * f64::from(step) / f64::from(steps))
+        .find(|&pressure_pa| region.lifted_at(pressure_pa) > region.least + 0.005)
+        .unwrap_or(0.6 * region.highest_pa);
+    let rounds = (duration_s / dice.uniform(15.0, 30.0)).round().max(1.0);
+    let stops = dice.between(1, 4);
+    let move_s = duration_s / rounds / (2 * stops) as f64;
+    let still = dice.uniform(0.1, 0.5);
+    let (mut last_pa, mut to) = (from_pa, region.lifted_at(from_pa));
+    writer.push(last_pa, to);
+    while !writer.full() {
+        let top_pa = from_pa + (region.highest_pa - from_pa) * dice.uniform(0.6, 1.0);
+        for stop in (1..=stops).chain((0..stops).rev()) {
+            let next_pa = from_pa + (top_pa - from_pa) * stop as f64 / stops as f64;
+            // In parts, since the muscle shortens less and less.
+            for part in 1..=10 {
+                let pressure_pa = last_pa + (next_pa - last_pa) * f64::from(part) / 10.0;
+                to = region.lifted_at(pressure_pa);
+                writer.go(pressure_pa, to, 0.1 * (1.0 - still) * move_s);
+            }
+            writer.go(next_pa, to, still * move_s);
+            last_pa = next_pa;
+        }
     }
 }
 

@@ -3,7 +3,8 @@
 use crate::caliper::Caliper;
 use crate::draw::Dice;
 use crate::friction::{Element, Friction, Standstill};
-use crate::protocol::{KINDS as USUAL_KINDS, Kind};
+use crate::muscle::{Muscle, StaticForce};
+use crate::protocol::{KINDS as USUAL_KINDS, Kind, Load, Region, Regulator};
 use crate::sensors::{Color, Sensor, Sensors};
 use crate::shape::Shape;
 use crate::world::Demands;
@@ -15,7 +16,7 @@ use super::protocol::KINDS;
 /// The base turns over within some tens of micrometers, far below the 0.2 mm at which pre-sliding begins.
 pub fn redraw_friction(dice: &mut Dice, friction: &mut Friction) -> &'static str {
     friction.standstill = Standstill::draw_sealed(dice);
-    let reach_m = dice.log_uniform(6e-6, 2.5e-5);
+    let reach_m = dice.log_uniform(8e-6, 2.5e-5);
     let (element, name) = match dice.weighted(&[1.0, 1.0, 1.0]) {
         0 => (Element::Dahl { reach_m, state: 0.0 }, "exponential"),
         1 => (Element::slip(&[0.5 * reach_m, reach_m, 2.5 * reach_m], &[1.0, 1.0, 0.6], 0.0), "slip-by-slip"),
@@ -50,6 +51,12 @@ pub fn redraw_sensors(dice: &mut Dice, demands: &Demands, sensors: &mut Sensors)
     let filter_s = if dice.chance(0.5) { dice.log_uniform(5e-4, 3e-3) } else { 0.0 };
     for channel in [&mut sensors.pressure, &mut sensors.length, &mut sensors.force] {
         (channel.filter_s, channel.filter_order) = (filter_s, 2);
+    }
+    if demands.quiet {
+        for channel in [&mut sensors.pressure, &mut sensors.length, &mut sensors.force] {
+            channel.noise = channel.noise.min(channel.full_scale * dice.log_uniform(1e-4, 5e-4));
+            channel.bits = channel.bits.max(14);
+        }
     }
     sensors.force.bow = dice.sign() * dice.uniform(0.0, 5e-4);
     sensors.pressure.bow = dice.sign() * dice.uniform(0.0, 1e-3);
@@ -113,6 +120,22 @@ pub fn draw_plan(dice: &mut Dice, demands: &Demands, rate_hz: f64) -> (Vec<(Kind
     (plan, estimation)
 }
 
+/// A regulator that holds whatever comes, or one that sags by some kilopascals while the muscle contracts.
+pub fn draw_regulator(dice: &mut Dice) -> Option<Regulator> {
+    dice.chance(0.7).then(|| Regulator { share: dice.uniform(0.3, 1.2), recovery_s: dice.log_uniform(0.01, 0.06) })
+}
+
+/// A weight that the muscle lifts at a part of its highest pressure, in a dashpot that damps it well.
+pub fn draw_load(dice: &mut Dice, force: &StaticForce, muscle: &Muscle, region: &Region) -> Load {
+    let middle_m = region.rest_m * (1.0 - 0.5 * (region.least + region.most));
+    let most_n = force.parts(0.75 * muscle.highest_pressure_pa, middle_m).total_n();
+    Load {
+        weight_n: (most_n * dice.uniform(0.25, 0.8)).max(15.0),
+        dashpot_n_s_per_m: dice.log_uniform(4000.0, 9000.0),
+        stops_m: (region.rest_m * (1.0 - region.most), region.rest_m * (1.0 - region.least)),
+    }
+}
+
 /// How the dimensions were measured.
 pub fn draw_caliper(dice: &mut Dice) -> Caliper {
     match dice.weighted(&[0.3, 0.25, 0.25, 0.2]) {
@@ -126,6 +149,10 @@ pub fn draw_caliper(dice: &mut Dice) -> Caliper {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::catalogue::Half;
+    use crate::protocol::path;
+    use crate::simulate::{Subject, run};
+    use crate::world::{Bench, World};
 
     #[test]
     fn a_plan_has_what_an_effect_wants_and_something_held_out() {
@@ -136,6 +163,38 @@ mod tests {
             assert!((1..=6).contains(&estimation) && plan.len() > estimation && plan.len() <= estimation + 2);
             assert!(plan[..estimation].iter().any(|part| part.0 == Kind::Staircase));
             assert!(plan.iter().all(|part| (10.0..=400.0).contains(&part.1)));
+        }
+    }
+
+    #[test]
+    fn a_hanging_weight_is_carried_when_it_rests_and_moves_without_chatter() {
+        let mut dice = Dice::new(21, 4);
+        let demands = Demands { wants: vec![Kind::LoadedHang], ..Demands::default() };
+        for _ in 0..6 {
+            let Ok(world) = World::draw(&mut dice, Bench::Lumped, &demands, Half::Sealed) else { continue };
+            let mut path = path(Kind::LoadedHang, 20.0, 1e-3, &mut dice, &world.region);
+            let weight_n = path.load.expect("a weight").weight_n;
+            // Five seconds at the last pressure.
+            let count = path.pressure_pa.len();
+            let still_pa = path.pressure_pa[count - 5001];
+            path.pressure_pa[count - 5000..].fill(still_pa);
+            let subject = Subject {
+                force: &world.force,
+                friction: world.friction.clone(),
+                rest_m: world.muscle.rest_length_m,
+                continuous: true,
+                start_seed: 1,
+            };
+            let trace = &run(&subject, &[path], &[], Vec::new())[0];
+            let rests_n = trace.force_n[count - 1];
+            let rests_at = world.muscle.contraction(trace.length_m[count - 1]);
+            let at_stop = (world.region.most - rests_at).min(rests_at - world.region.least) < 1e-3;
+            // A stiff dashpot and a soft muscle take some seconds to settle.
+            assert!(at_stop || (rests_n - weight_n).abs() < 0.5 + 0.03 * weight_n, "{rests_n} {weight_n}");
+            for lengths_m in trace.length_m.windows(3) {
+                let turned = (lengths_m[2] - lengths_m[1]) * (lengths_m[1] - lengths_m[0]);
+                assert!(turned > -1e-13, "{lengths_m:?}");
+            }
         }
     }
 
