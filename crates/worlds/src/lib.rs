@@ -21,8 +21,8 @@
 //! after 40 of them, or as many steps as take about a second, another effect is concealed instead.
 //!
 //! Modules in reading order: [`draw`], [`curve`], [`rubber`], [`muscle`], [`caliper`], [`lumped`], [`slices`], [`shape`],
-//! [`friction`], [`mechanism`], [`place`], [`forms`], [`sealed`], [`catalogue`], [`protocol`], [`simulate`], [`sensors`],
-//! [`severity`], [`world`], [`case`], [`mod@write`].
+//! [`standstill`], [`friction`], [`mechanism`], [`place`], [`forms`], [`sealed`], [`catalogue`], [`region`], [`protocol`],
+//! [`simulate`], [`noise`], [`sensors`], [`severity`], [`world`], [`case`], [`mod@write`].
 
 pub mod caliper;
 pub mod case;
@@ -34,8 +34,10 @@ pub mod friction;
 pub mod lumped;
 pub mod mechanism;
 pub mod muscle;
+pub mod noise;
 pub mod place;
 pub mod protocol;
+pub mod region;
 pub mod rubber;
 pub mod sealed;
 pub mod sensors;
@@ -43,5 +45,6 @@ pub mod severity;
 pub mod shape;
 pub mod simulate;
 pub mod slices;
+pub mod standstill;
 pub mod world;
 pub mod write;

@@ -5,7 +5,8 @@ use crate::forms::{Built, Compliance};
 use crate::friction::Friction;
 use crate::mechanism::{Mechanism, Moment};
 use crate::muscle::{Parts, StaticForce};
-use crate::protocol::{Load, Path};
+use crate::protocol::Path;
+use crate::region::Load;
 
 /// What happened along one path, at its fine step.
 #[derive(Debug, Clone, Default)]

@@ -5,14 +5,17 @@ use serde::Serialize;
 use crate::caliper::Caliper;
 use crate::catalogue::{Form, Half};
 use crate::draw::Dice;
-use crate::friction::{Amplitude, Element, Friction, Standstill};
+use crate::friction::{Amplitude, Element, Friction};
 use crate::lumped::LumpedMuscle;
 use crate::muscle::{Muscle, StaticForce};
-use crate::protocol::{KINDS, Kind, Region};
+use crate::noise::Color;
+use crate::protocol::{KINDS, Kind};
+use crate::region::Region;
 use crate::rubber::Rubber;
 use crate::sealed;
-use crate::sensors::{Color, Sensor, Sensors};
+use crate::sensors::{Sensor, Sensors};
 use crate::slices::SlicedMuscle;
+use crate::standstill::Standstill;
 
 /// Bench that a case comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -1,7 +1,7 @@
 //! The third part of the bench: forms and worlds that are in neither half, for when both have been looked at.
 //!
 //! Forms of the effects by other published equations, states and parametrizations: [`friction`], [`memory`], [`slow`],
-//! [`geometry`], [`air`], [`fixture`]; what no catalogue has: [`nameless`]. Rubbers, turns of friction, laws at standstill,
+//! [`geometry`], [`air`], [`fixture`], [`drift`]; what no catalogue has: [`nameless`]. Rubbers, turns of friction, laws at standstill,
 //! calipers and sensors: [`world`]; recordings: [`protocol`].
 
 use crate::catalogue::{Form, Half, form};
@@ -9,6 +9,7 @@ use crate::forms::Build;
 use crate::protocol::Kind;
 
 pub mod air;
+pub mod drift;
 pub mod fixture;
 pub mod friction;
 pub mod geometry;
@@ -81,10 +82,10 @@ pub const NAMED: &[Form] = &[
     of("series-compliance", "preloaded-joint", fixture::compliance_joint, RAMPS),
     of("inertia", "two-masses", fixture::inertia_two, FAST),
     of("inertia", "lever", fixture::inertia_lever, FAST),
-    slowly("force-drift", "root-of-time", slow::drift_root, ANY),
-    slowly("force-drift", "random-walk", slow::drift_walk, ANY),
-    of("force-step", "back-in-part", slow::step_back, ANY),
-    of("force-step", "slipping-bond", slow::step_slip, ANY),
+    slowly("force-drift", "root-of-time", drift::drift_root, ANY),
+    slowly("force-drift", "random-walk", drift::drift_walk, ANY),
+    of("force-step", "back-in-part", drift::step_back, ANY),
+    of("force-step", "slipping-bond", drift::step_slip, ANY),
 ];
 
 /// Forms that no catalogue names.

@@ -2,11 +2,14 @@
 
 use crate::caliper::Caliper;
 use crate::draw::Dice;
-use crate::friction::{Element, Friction, Standstill};
+use crate::friction::{Element, Friction};
 use crate::muscle::{Muscle, StaticForce};
-use crate::protocol::{KINDS as USUAL_KINDS, Kind, Load, Region, Regulator};
-use crate::sensors::{Color, Sensor, Sensors};
+use crate::noise::Color;
+use crate::protocol::{KINDS as USUAL_KINDS, Kind};
+use crate::region::{Load, Region, Regulator};
+use crate::sensors::{Sensor, Sensors};
 use crate::shape::Shape;
+use crate::standstill::Standstill;
 use crate::world::Demands;
 
 use super::protocol::KINDS;
