@@ -109,7 +109,7 @@ prove: cargo-is-there
 	$(BIN)/prove --cases $(CASES) --seed $(SEED) $(if $(filter 400,$(CASES)),--record scripts/proof)
 
 # The same question to worlds that share nothing with the fitter, below out/worlds; 100 cases where CASES is not given.
-# HALF=choose is for whoever chooses constants, HALF=report for outcomes.
+# HALF=choose is for whoever chooses constants, HALF=report for outcomes, HALF=sealed for other forms in other worlds.
 HALF ?= report
 prove-worlds: CASES := $(if $(filter file,$(origin CASES)),100,$(CASES))
 prove-worlds: SEED ?= $(shell date +%s)

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::catalogue::{Form, Half, NAMED, NAMELESS, ids};
+use crate::catalogue::{Form, Half, ids, named, nameless};
 use crate::draw::Dice;
 use crate::forms::{Built, Setting};
 use crate::lumped::LumpedMuscle;
@@ -140,8 +140,7 @@ fn concealed(
     let mut order: Vec<usize> = (0..all.len()).collect();
     Dice::new(request.seed, 100 + (before / all.len()) as u64).shuffle(&mut order);
     let of = |id: &str, dice: &mut Dice| -> &'static Form {
-        let forms: Vec<&'static Form> =
-            NAMED.iter().filter(|form| form.id == id && form.half == request.half).collect();
+        let forms = named(id, request.half);
         forms[dice.between(0, forms.len() - 1)]
     };
     let first = |dice: &mut Dice| {
@@ -167,7 +166,7 @@ fn concealed(
             }
         }
         CaseKind::Nameless => {
-            let forms: Vec<&'static Form> = NAMELESS.iter().filter(|form| form.half == request.half).collect();
+            let forms = nameless(request.half);
             let mut form = forms[before % forms.len()];
             while given_up.contains(&form.form) {
                 form = *dice.pick(&forms);
@@ -368,6 +367,7 @@ impl Case {
         let half = match request.half {
             Half::Choose => 1,
             Half::Report => 2,
+            Half::Sealed => 3,
         };
         let mut by_reason: BTreeMap<Unmade, usize> = BTreeMap::new();
         let mut given_up: Vec<&'static str> = Vec::new();
@@ -390,7 +390,7 @@ impl Case {
             }
             tried += 1;
             let bench = request.bench.unwrap_or(if index.is_multiple_of(2) { Bench::Lumped } else { Bench::Slices });
-            let outcome = match World::draw(&mut dice, bench, &Demands::of(&forms)) {
+            let outcome = match World::draw(&mut dice, bench, &Demands::of(&forms), request.half) {
                 Ok(mut world) => {
                     let left = most.saturating_sub(work);
                     Self::stage((kinds[index], index), &forms, &mut world, &mut dice, left)

@@ -1,10 +1,12 @@
 //! Every effect in its forms, and which half each form belongs to.
 //!
 //! The half `choose` is for those who choose methods and constants; the half `report` is for those who report how good the
-//! outcome is. Every effect has at least one form in each half, and no form is in both.
+//! outcome is. Every effect has at least one form in each half, and no form is in both. Once both have been looked at, the
+//! third part, [`crate::sealed`], has forms and worlds that are in neither.
 
 use crate::forms::{Build, fixture, friction, geometry, memory, nameless, pneumatics, slow};
 use crate::protocol::Kind;
+use crate::sealed;
 
 /// Half that a form belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +15,19 @@ pub enum Half {
     Choose,
     /// For reporting.
     Report,
+    /// Beside the halves: other forms in other worlds, for when both halves have been looked at.
+    Sealed,
+}
+
+impl Half {
+    /// Name, for the truth.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Choose => "choose",
+            Self::Report => "report",
+            Self::Sealed => "sealed",
+        }
+    }
 }
 
 /// One form of one effect.
@@ -32,7 +47,7 @@ pub struct Form {
     pub slow: bool,
 }
 
-const fn form(
+pub(crate) const fn form(
     id: &'static str,
     form: &'static str,
     half: Half,
@@ -158,6 +173,16 @@ pub fn ids() -> Vec<&'static str> {
     ids
 }
 
+/// Forms of an effect in a half.
+pub fn named(id: &str, half: Half) -> Vec<&'static Form> {
+    NAMED.iter().chain(sealed::NAMED).filter(|form| form.id == id && form.half == half).collect()
+}
+
+/// Forms of a half that no catalogue names.
+pub fn nameless(half: Half) -> Vec<&'static Form> {
+    NAMELESS.iter().chain(sealed::NAMELESS).filter(|form| form.half == half).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -165,13 +190,20 @@ mod tests {
     #[test]
     fn every_effect_has_a_form_in_each_half() {
         assert_eq!(ids().len(), 22);
-        for id in ids() {
-            for half in [Choose, Report] {
-                assert!(NAMED.iter().any(|form| form.id == id && form.half == half), "{id} {half:?}");
+        for half in [Choose, Report, Half::Sealed] {
+            for id in ids() {
+                assert!(!named(id, half).is_empty(), "{id} {half:?}");
             }
+            assert!(nameless(half).len() >= 6);
         }
-        for half in [Choose, Report] {
-            assert!(NAMELESS.iter().filter(|form| form.half == half).count() >= 6);
+    }
+
+    #[test]
+    fn no_form_is_in_two_halves_and_none_has_an_id_of_its_own() {
+        let all: Vec<&Form> = NAMED.iter().chain(NAMELESS).chain(sealed::NAMED).chain(sealed::NAMELESS).collect();
+        for (index, form) in all.iter().enumerate() {
+            assert!(!all[..index].iter().any(|other| (other.id, other.form) == (form.id, form.form)), "{}", form.form);
+            assert!(form.id == "nameless" || ids().contains(&form.id), "{}", form.id);
         }
     }
 }

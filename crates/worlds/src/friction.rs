@@ -13,7 +13,8 @@
 
 use std::f64::consts::PI;
 
-use crate::draw::Dice;
+use crate::shape::Shape;
+use crate::standstill::Standstill;
 
 /// Sizes of the terms of friction.
 #[derive(Debug, Clone, Copy)]
@@ -84,6 +85,15 @@ pub enum Element {
         /// State, −1…1.
         state: f64,
     },
+    /// One of the shapes that have a slope and no closed form.
+    Shaped {
+        /// Shape.
+        shape: Shape,
+        /// Distance that sets the scale of pre-sliding, m.
+        reach_m: f64,
+        /// State, −1…1.
+        state: f64,
+    },
 }
 
 impl Element {
@@ -96,7 +106,10 @@ impl Element {
     /// State in −1…1 (slightly beyond for damped bristles).
     pub fn state(&self) -> f64 {
         match self {
-            Self::Stop { state, .. } | Self::Dahl { state, .. } | Self::BoucWen { state, .. } => *state,
+            Self::Stop { state, .. }
+            | Self::Dahl { state, .. }
+            | Self::BoucWen { state, .. }
+            | Self::Shaped { state, .. } => *state,
             Self::LuGre { state, damping_s, rate, .. } => (state + damping_s * rate).clamp(-1.2, 1.2),
             Self::Slip(elements) => elements.iter().map(|(_, weight, state)| weight * state).sum(),
         }
@@ -105,7 +118,10 @@ impl Element {
     /// Sets every internal state.
     pub fn set(&mut self, start: f64) {
         match self {
-            Self::Stop { state, .. } | Self::Dahl { state, .. } | Self::BoucWen { state, .. } => *state = start,
+            Self::Stop { state, .. }
+            | Self::Dahl { state, .. }
+            | Self::BoucWen { state, .. }
+            | Self::Shaped { state, .. } => *state = start,
             Self::LuGre { state, rate, .. } => (*state, *rate) = (start, 0.0),
             Self::Slip(elements) => elements.iter_mut().for_each(|element| element.2 = start),
         }
@@ -130,6 +146,7 @@ impl Element {
                     *state = (*state + travel_m / *reach_m).clamp(-1.0, 1.0);
                 }
             }
+            Self::Shaped { shape, reach_m, state } => *state = shape.step(*state, travel_m / *reach_m),
             Self::BoucWen { reach_m, exponent, beta, state } => {
                 let parts = (travel_m.abs() / (0.1 * *reach_m)).ceil().clamp(1.0, 60.0);
                 for _ in 0..parts as usize {
@@ -143,39 +160,13 @@ impl Element {
     }
 }
 
-/// What friction does while the length is held and the pressure moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Standstill {
-    /// Keeps its last value.
-    Held,
-    /// Follows the direction of the pressure at once.
-    FollowsPressure,
-    /// A stop operator on pressure with this reach, Pa.
-    SlidesAfter(f64),
-}
-
-impl Standstill {
-    /// Draws a law.
-    pub fn draw(dice: &mut Dice) -> Self {
-        match dice.weighted(&[1.0, 1.0, 1.0]) {
-            0 => Self::Held,
-            1 => Self::FollowsPressure,
-            _ => Self::SlidesAfter(dice.log_uniform(3e3, 3e4)),
-        }
-    }
-
-    /// Name, for the truth.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Held => "held",
-            Self::FollowsPressure => "follows-pressure",
-            Self::SlidesAfter(_) => "slides-after-pressure",
-        }
-    }
-}
-
 /// Speed below which a braid counts as standing, m/s: what a good drive leaves of motion.
 const STANDING_M_PER_S: f64 = 4e-5;
+
+/// State after a push towards its direction, at most to `most`; what is beyond that already stays.
+fn pushed(state: f64, push: f64, most: f64) -> f64 {
+    if push > 0.0 { (state + push).min(most).max(state) } else { (state + push).max(-most).min(state) }
+}
 
 /// Friction with its state.
 #[derive(Debug, Clone)]
@@ -194,9 +185,22 @@ impl Friction {
         let reach_pa = match self.standstill {
             Standstill::Held => f64::INFINITY,
             Standstill::FollowsPressure => 150.0,
-            Standstill::SlidesAfter(reach_pa) => reach_pa,
+            Standstill::SlidesAfter(reach_pa)
+            | Standstill::GivesPartly { reach_pa, .. }
+            | Standstill::GivesLate { reach_pa, .. } => reach_pa,
         };
         let standing = (-(travel_m / dt_s / STANDING_M_PER_S).powi(2)).exp();
+        let rise_pa = match &mut self.standstill {
+            Standstill::GivesLate { band_pa, place_pa, .. } => {
+                let moved_pa = *place_pa + rise_pa;
+                let held_pa = moved_pa.clamp(-*band_pa, *band_pa);
+                // Motion renews the contacts, and with them the band.
+                *place_pa = standing * held_pa;
+                moved_pa - held_pa
+            }
+            _ => rise_pa,
+        };
+        let most = if let Standstill::GivesPartly { most, .. } = self.standstill { most } else { 1.0 };
         self.element.step(travel_m, dt_s);
         if standing > 1e-6 && reach_pa.is_finite() && rise_pa.abs() > 0.0 {
             let push = standing * rise_pa / reach_pa;
@@ -204,13 +208,18 @@ impl Friction {
                 Element::Slip(elements) => {
                     let largest_m = elements.iter().fold(0.0_f64, |most, element| most.max(element.0));
                     for (reach_m, _, state) in elements {
-                        *state = (*state + push * largest_m / *reach_m).clamp(-1.0, 1.0);
+                        *state = pushed(*state, push * largest_m / *reach_m, most);
                     }
                 }
-                Element::Stop { state, .. } => *state = (*state + push).clamp(-1.0, 1.0),
-                Element::Dahl { state, .. } | Element::LuGre { state, .. } | Element::BoucWen { state, .. } => {
-                    let to = push.signum();
-                    *state = to + (*state - to) * (-push.abs()).exp();
+                Element::Stop { state, .. } => *state = pushed(*state, push, most),
+                Element::Dahl { state, .. }
+                | Element::LuGre { state, .. }
+                | Element::BoucWen { state, .. }
+                | Element::Shaped { state, .. } => {
+                    let to = most * push.signum();
+                    if (to - *state) * push > 0.0 {
+                        *state = to + (*state - to) * (-push.abs()).exp();
+                    }
                 }
             }
         }
@@ -228,6 +237,7 @@ mod tests {
             Element::LuGre { reach_m: 1e-3, damping_s: 1e-3, state: 0.0, rate: 0.0 },
             Element::slip(&[2e-4, 8e-4, 3e-3], &[1.0, 2.0, 1.0], 0.0),
             Element::BoucWen { reach_m: 1e-3, exponent: 1.5, beta: 0.6, state: 0.0 },
+            Element::Shaped { shape: Shape::Endochronic(0.7), reach_m: 1e-3, state: 0.0 },
         ]
     }
 
@@ -272,5 +282,9 @@ mod tests {
         assert_eq!(after(Standstill::Held, 5e4), -1.0);
         assert_eq!(after(Standstill::FollowsPressure, 5e4), 1.0);
         assert!((after(Standstill::SlidesAfter(2e4), 1e4) + 0.5).abs() < 1e-9);
+        assert!((after(Standstill::GivesPartly { reach_pa: 1e4, most: 0.4 }, 5e4) - 0.4).abs() < 1e-9);
+        let late = Standstill::GivesLate { band_pa: 5e3, reach_pa: 1e4, place_pa: 0.0 };
+        assert_eq!(after(late, 4e3), -1.0);
+        assert!((after(late, 1e4) + 0.5).abs() < 1e-9);
     }
 }

@@ -3,7 +3,8 @@
 //! A diagnosis that is proved on a bench with its own formulas proves that it can find them again. Every case here is a world
 //! of its own: another muscle, other laws for rubber, friction, standstill and noise, other protocols; and in it an effect
 //! in one of several published forms, or two, or none, or one that no catalogue has. Forms are split into two halves, so that
-//! whoever chooses constants on one half reports on forms that were never seen.
+//! whoever chooses constants on one half reports on forms that were never seen. A third part, [`sealed`], has forms, rubbers,
+//! turns of friction, calipers, sensors and protocols that neither half has.
 //!
 //! # Two benches
 //! [`lumped`]: a cylinder by virtual work. [`slices`]: 15 to 40 slices in equilibrium, without any closed form.
@@ -19,9 +20,11 @@
 //! of a generic static map ([`severity`]). A world in which it cannot show is drawn anew and counted by reason;
 //! after 40 of them, or as many steps as take about a second, another effect is concealed instead.
 //!
-//! Modules in reading order: [`draw`], [`curve`], [`rubber`], [`muscle`], [`lumped`], [`slices`], [`friction`], [`mechanism`],
-//! [`place`], [`forms`], [`catalogue`], [`protocol`], [`simulate`], [`sensors`], [`severity`], [`world`], [`case`], [`mod@write`].
+//! Modules in reading order: [`draw`], [`curve`], [`rubber`], [`muscle`], [`caliper`], [`lumped`], [`slices`], [`shape`],
+//! [`standstill`], [`friction`], [`mechanism`], [`place`], [`forms`], [`sealed`], [`catalogue`], [`region`], [`protocol`],
+//! [`simulate`], [`noise`], [`sensors`], [`severity`], [`world`], [`case`], [`mod@write`].
 
+pub mod caliper;
 pub mod case;
 pub mod catalogue;
 pub mod curve;
@@ -31,12 +34,17 @@ pub mod friction;
 pub mod lumped;
 pub mod mechanism;
 pub mod muscle;
+pub mod noise;
 pub mod place;
 pub mod protocol;
+pub mod region;
 pub mod rubber;
+pub mod sealed;
 pub mod sensors;
 pub mod severity;
+pub mod shape;
 pub mod simulate;
 pub mod slices;
+pub mod standstill;
 pub mod world;
 pub mod write;

@@ -5,6 +5,8 @@ use std::f64::consts::{PI, TAU};
 use serde::Serialize;
 
 use crate::draw::Dice;
+use crate::region::{Load, Region};
+use crate::sealed;
 
 /// Kind of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -30,9 +32,25 @@ pub enum Kind {
     Multisine,
     /// By hand, irregular.
     HandPulled,
+    /// Even steps of pressure up and down at held lengths.
+    Staircase,
+    /// Bursts of sines in length at rising frequencies, with dwells.
+    DwelledSines,
+    /// Strides of a leg with bursts of pressure.
+    GaitCycles,
+    /// Random steps in pressure and length, each on its own.
+    RandomSteps,
+    /// Slow pulls that are let go quickly.
+    QuickRelease,
+    /// Sines in pressure and length that grow and shrink together.
+    GrowingSpiral,
+    /// By hand with tremor, and a valve that is turned by hand.
+    HandHeld,
+    /// A weight in a dashpot, while the pressure goes up and down.
+    LoadedHang,
 }
 
-/// Every kind.
+/// Kinds of the two halves.
 pub const KINDS: [Kind; 10] = [
     Kind::Isobaric,
     Kind::IsometricRamps,
@@ -46,49 +64,6 @@ pub const KINDS: [Kind; 10] = [
     Kind::HandPulled,
 ];
 
-/// Where the rig may go.
-#[derive(Debug, Clone)]
-pub struct Region {
-    /// Most contraction by pressure, at equal distances from 0 to the highest pressure.
-    pub taut: Vec<f64>,
-    /// Highest pressure, Pa.
-    pub highest_pa: f64,
-    /// Least contraction.
-    pub least: f64,
-    /// Most contraction at any pressure.
-    pub most: f64,
-    /// Whether triangles are cycled as fast as the rig goes.
-    pub cycling: bool,
-    /// Rest length, m.
-    pub rest_m: f64,
-    /// Highest speed, m/s.
-    pub fastest_m_per_s: f64,
-    /// Highest frequency of chirps, Hz.
-    pub highest_hz: f64,
-    /// Bandwidths of the drives of length and of pressure, Hz.
-    pub bandwidths_hz: (f64, f64),
-}
-
-impl Region {
-    /// Most contraction at a pressure.
-    pub fn most_at(&self, pressure_pa: f64) -> f64 {
-        let place = (pressure_pa / self.highest_pa).clamp(0.0, 1.0) * (self.taut.len() - 1) as f64;
-        let index = (place as usize).min(self.taut.len() - 2);
-        let share = place - index as f64;
-        let taut = self.taut[index] * (1.0 - share) + self.taut[index + 1] * share;
-        taut.min(self.most).max(self.least)
-    }
-
-    /// Least pressure at which a contraction is taut, Pa.
-    pub fn least_pressure_pa(&self, contraction: f64) -> f64 {
-        let steps = 200;
-        (0..=steps)
-            .map(|step| self.highest_pa * f64::from(step) / f64::from(steps))
-            .find(|&pressure_pa| self.most_at(pressure_pa) >= contraction)
-            .unwrap_or(self.highest_pa)
-    }
-}
-
 /// Path of the rig, at the fine step.
 #[derive(Debug, Clone)]
 pub struct Path {
@@ -96,36 +71,39 @@ pub struct Path {
     pub dt_s: f64,
     /// Pressure at the gauge, Pa.
     pub pressure_pa: Vec<f64>,
-    /// Length at the encoder, m.
+    /// Length at the encoder, m; where a weight hangs, about where it will be.
     pub length_m: Vec<f64>,
+    /// Weight that decides the length.
+    pub load: Option<Load>,
 }
 
-struct Writer<'a> {
-    region: &'a Region,
-    dt_s: f64,
-    count: usize,
+/// Writes commands step by step, up to a number of them.
+pub(crate) struct Writer<'a> {
+    pub(crate) region: &'a Region,
+    pub(crate) dt_s: f64,
+    pub(crate) count: usize,
     pressure_pa: Vec<f64>,
     contraction: Vec<f64>,
 }
 
 impl Writer<'_> {
-    fn full(&self) -> bool {
+    pub(crate) fn full(&self) -> bool {
         self.pressure_pa.len() >= self.count
     }
 
-    fn push(&mut self, pressure_pa: f64, contraction: f64) {
+    pub(crate) fn push(&mut self, pressure_pa: f64, contraction: f64) {
         if !self.full() {
             self.pressure_pa.push(pressure_pa);
             self.contraction.push(contraction);
         }
     }
 
-    fn here(&self, pressure_pa: f64, contraction: f64) -> (f64, f64) {
+    pub(crate) fn here(&self, pressure_pa: f64, contraction: f64) -> (f64, f64) {
         (*self.pressure_pa.last().unwrap_or(&pressure_pa), *self.contraction.last().unwrap_or(&contraction))
     }
 
     /// Moves evenly to a point.
-    fn go(&mut self, pressure_pa: f64, contraction: f64, seconds: f64) {
+    pub(crate) fn go(&mut self, pressure_pa: f64, contraction: f64, seconds: f64) {
         let (from_pa, from) = self.here(pressure_pa, contraction);
         let steps = (seconds / self.dt_s).ceil().max(1.0) as usize;
         for step in 1..=steps {
@@ -135,20 +113,20 @@ impl Writer<'_> {
     }
 
     /// Moves evenly at a speed of length, m/s.
-    fn slide(&mut self, contraction: f64, speed_m_per_s: f64) {
+    pub(crate) fn slide(&mut self, contraction: f64, speed_m_per_s: f64) {
         let (pressure_pa, from) = self.here(0.0, contraction);
         let way_m = (contraction - from).abs() * self.region.rest_m;
         self.go(pressure_pa, contraction, way_m / speed_m_per_s);
     }
 
-    fn hold(&mut self, seconds: f64) {
+    pub(crate) fn hold(&mut self, seconds: f64) {
         let (pressure_pa, contraction) = self.here(0.0, 0.0);
         self.go(pressure_pa, contraction, seconds);
     }
 }
 
 /// Levels over the pressures in use, in random order.
-fn pressures(dice: &mut Dice, region: &Region, count: usize) -> Vec<f64> {
+pub(crate) fn pressures(dice: &mut Dice, region: &Region, count: usize) -> Vec<f64> {
     // From where at least a third of the stroke is taut.
     let open_pa = region.least_pressure_pa(region.least + 0.35 * (region.most - region.least));
     let low = dice.uniform(0.15, 0.3).max(open_pa / region.highest_pa).min(0.8);
@@ -162,7 +140,7 @@ fn pressures(dice: &mut Dice, region: &Region, count: usize) -> Vec<f64> {
     levels
 }
 
-fn contractions(dice: &mut Dice, region: &Region, count: usize) -> Vec<f64> {
+pub(crate) fn contractions(dice: &mut Dice, region: &Region, count: usize) -> Vec<f64> {
     let mut levels: Vec<f64> = (0..count)
         .map(|index| {
             let share = if count == 1 { dice.uniform(0.2, 0.6) } else { 0.9 * index as f64 / (count - 1) as f64 };
@@ -190,12 +168,14 @@ pub fn path(kind: Kind, duration_s: f64, dt_s: f64, dice: &mut Dice, region: &Re
         Kind::MinorLoops => minor_loops(&mut writer, dice),
         Kind::Multisine => multisine(&mut writer, dice),
         Kind::HandPulled => hand_pulled(&mut writer, dice),
+        _ => sealed::protocol::write(kind, &mut writer, dice, duration_s),
     }
     while !writer.full() {
         let (pressure_pa, contraction) = writer.here(region.highest_pa * 0.5, region.least);
         writer.push(pressure_pa, contraction);
     }
-    follow(&writer)
+    let path = follow(&writer);
+    Path { load: region.hang.as_ref().filter(|_| kind == Kind::LoadedHang).map(|hang| hang.0), ..path }
 }
 
 fn isobaric(writer: &mut Writer, dice: &mut Dice, parts: usize, part_s: f64) {
@@ -432,7 +412,7 @@ fn follow(writer: &Writer) -> Path {
             })
             .collect()
     };
-    let pressure_pa = smooth(&writer.pressure_pa, region.bandwidths_hz.1);
+    let mut pressure_pa = smooth(&writer.pressure_pa, region.bandwidths_hz.1);
     let taut: Vec<f64> = writer
         .contraction
         .iter()
@@ -440,8 +420,11 @@ fn follow(writer: &Writer) -> Path {
         .map(|(&contraction, &pressure_pa)| contraction.min(region.most_at(pressure_pa)).max(region.least))
         .collect();
     let contraction = smooth(&taut, region.bandwidths_hz.0);
+    if let Some(regulator) = region.regulator {
+        regulator.disturb(&mut pressure_pa, &contraction, dt_s, 1.01 * region.highest_pa);
+    }
     let length_m = contraction.iter().map(|contraction| region.rest_m * (1.0 - contraction)).collect();
-    Path { dt_s, pressure_pa, length_m }
+    Path { dt_s, pressure_pa, length_m, load: None }
 }
 
 #[cfg(test)]
@@ -459,13 +442,15 @@ mod tests {
             fastest_m_per_s: 0.06,
             highest_hz: 5.0,
             bandwidths_hz: (8.0, 5.0),
+            regulator: None,
+            hang: None,
         }
     }
 
     #[test]
     fn every_protocol_stays_in_its_region_and_lasts_as_long_as_asked() {
         let region = region();
-        for kind in KINDS {
+        for kind in KINDS.into_iter().chain(sealed::protocol::KINDS) {
             let path = path(kind, 30.0, 2.5e-3, &mut Dice::new(1, 1), &region);
             assert_eq!(path.length_m.len(), 12_001, "{kind:?}");
             for (&pressure_pa, &length_m) in path.pressure_pa.iter().zip(&path.length_m) {
@@ -478,7 +463,7 @@ mod tests {
     #[test]
     fn a_path_has_no_jumps() {
         let region = region();
-        for kind in KINDS {
+        for kind in KINDS.into_iter().chain(sealed::protocol::KINDS) {
             let path = path(kind, 30.0, 2.5e-3, &mut Dice::new(2, 1), &region);
             for pair in path.length_m.windows(2) {
                 assert!((pair[1] - pair[0]).abs() < 1.5e-3, "{kind:?}");

@@ -1,68 +1,10 @@
 //! Sensors: filter, gain, zero, noise, bits, the clock; and what they add to the force.
 
-use std::f64::consts::TAU;
-
-use serde::Serialize;
-
 use crate::draw::Dice;
-use crate::forms::{Channel, Delay};
+use crate::forms::{Channel, Delay, Lateness};
 use crate::muscle::StaticForce;
+use crate::noise::Color;
 use crate::simulate::Trace;
-
-/// Color of the noise.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Color {
-    /// White.
-    White,
-    /// First order, with this correlation from sample to sample.
-    Ar1(f64),
-    /// One over frequency, as a sum of first orders a decade apart.
-    OneOverF,
-    /// White, with mains hum of this share of the power.
-    Hum(f64),
-}
-
-impl Color {
-    /// Name, for the truth.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::White => "white",
-            Self::Ar1(_) => "ar1",
-            Self::OneOverF => "one-over-f",
-            Self::Hum(_) => "mains-hum",
-        }
-    }
-
-    /// Noise of deviation 1.
-    fn series(self, count: usize, period_s: f64, dice: &mut Dice) -> Vec<f64> {
-        let mut first_order = |correlation: f64| -> Vec<f64> {
-            let scale = (1.0 - correlation * correlation).sqrt();
-            let mut value = dice.normal();
-            (0..count)
-                .map(|_| {
-                    value = correlation * value + scale * dice.normal();
-                    value
-                })
-                .collect()
-        };
-        match self {
-            Self::White => first_order(0.0),
-            Self::Ar1(correlation) => first_order(correlation),
-            Self::OneOverF => {
-                let parts: Vec<Vec<f64>> = [0.0, 0.6, 0.94, 0.994].map(&mut first_order).into();
-                (0..count).map(|index| parts.iter().map(|part| 0.5 * part[index]).sum()).collect()
-            }
-            Self::Hum(share) => {
-                let white = first_order(0.0);
-                let (hz, phase) = (50.0 + dice.uniform(-0.05, 0.05), dice.uniform(0.0, TAU));
-                let (hum, rest) = ((2.0 * share).sqrt(), (1.0 - share).sqrt());
-                let wave = |index: usize| (TAU * hz * index as f64 * period_s + phase).sin();
-                white.iter().enumerate().map(|(index, value)| rest * value + hum * wave(index)).collect()
-            }
-        }
-    }
-}
 
 /// One channel's sensor. Units are SI.
 #[derive(Debug, Clone)]
@@ -83,11 +25,20 @@ pub struct Sensor {
     pub bits: u32,
     /// Time constant of the anti-alias filter, s; 0 for none.
     pub filter_s: f64,
+    /// Order of that filter: so many first orders in series.
+    pub filter_order: usize,
+    /// Bow of the characteristic at half of the full scale, as a share of it.
+    pub bow: f64,
 }
 
 impl Sensor {
     fn calibrated(&self, value: f64) -> f64 {
-        self.pivot + self.gain * (value - self.pivot) + self.zero
+        let straight = self.pivot + self.gain * (value - self.pivot) + self.zero;
+        if self.bow == 0.0 {
+            return straight;
+        }
+        let share = value / self.full_scale;
+        straight + 4.0 * self.bow * self.full_scale * share * (1.0 - share)
     }
 
     fn quantized(&self, value: f64) -> f64 {
@@ -100,14 +51,15 @@ impl Sensor {
             return values.to_vec();
         }
         let keep = (-dt_s / self.filter_s).exp();
-        let mut state = values[0];
-        values
-            .iter()
-            .map(|&value| {
-                state = keep * state + (1.0 - keep) * value;
-                state
-            })
-            .collect()
+        let mut filtered = values.to_vec();
+        for _ in 0..self.filter_order {
+            let mut state = filtered[0];
+            for value in &mut filtered {
+                state = keep * state + (1.0 - keep) * *value;
+                *value = state;
+            }
+        }
+        filtered
     }
 }
 
@@ -130,6 +82,10 @@ pub struct Sensors {
     pub stamps_show_jitter: bool,
     /// Gaps in the log per recording.
     pub gaps: usize,
+    /// Share of the samples that are lost one by one.
+    pub lost: f64,
+    /// Step of the stamps, s; 0 where they have as many digits as the file.
+    pub stamp_step_s: f64,
 }
 
 /// A recording as logged, and what a perfect load cell would have logged.
@@ -165,10 +121,14 @@ fn at(values: &[f64], place: f64) -> f64 {
 /// What a delay is at a time, s.
 fn late_s(delay: Option<Delay>, channel: Channel, time_s: f64) -> f64 {
     match delay {
-        Some(delay) if delay.channel == channel => {
-            let wander = (1.7 * time_s).sin() + (0.61 * time_s + 1.0).sin() + (4.3 * time_s + 2.0).sin();
-            (delay.delay_s * (1.0 + delay.jitter * wander / 1.5)).max(0.0)
-        }
+        Some(delay) if delay.channel == channel => match delay.lateness {
+            Lateness::Wandering(share) => {
+                let wander = (1.7 * time_s).sin() + (0.61 * time_s + 1.0).sin() + (4.3 * time_s + 2.0).sin();
+                (delay.delay_s * (1.0 + share * wander / 1.5)).max(0.0)
+            }
+            Lateness::Growing { per_s } => 0.5 * delay.delay_s + per_s * time_s,
+            Lateness::Polled { period_s } => 0.5 * delay.delay_s + time_s.rem_euclid(period_s),
+        },
         _ => 0.0,
     }
 }
@@ -200,6 +160,9 @@ impl Sensors {
             let to = (from + length as usize).min(count - 1);
             keep[from..to].fill(false);
         }
+        if self.lost > 0.0 {
+            keep[1..].iter_mut().for_each(|keep| *keep &= !dice.chance(self.lost));
+        }
         if noisy {
             noise_of = [noise(&self.pressure, dice), noise(&self.length, dice), noise(&self.force, dice)];
         }
@@ -224,7 +187,12 @@ impl Sensors {
             log.true_force_n.push(force_n);
             log.true_inputs.push((pressure_pa, length_m));
             log.state.push(at(&trace.state, instant_s / dt_s));
-            log.time_s.push(if self.stamps_show_jitter { instant_s } else { time_s });
+            let stamp_s = if self.stamps_show_jitter { instant_s } else { time_s };
+            log.time_s.push(if self.stamp_step_s > 0.0 {
+                (stamp_s / self.stamp_step_s).round() * self.stamp_step_s
+            } else {
+                stamp_s
+            });
             if !noisy {
                 continue;
             }
@@ -251,18 +219,8 @@ impl Sensors {
 mod tests {
     use super::*;
 
-    #[test]
-    fn every_color_has_the_deviation_it_was_asked_for() {
-        for color in [Color::White, Color::Ar1(0.8), Color::OneOverF, Color::Hum(0.5)] {
-            let series = color.series(20_000, 0.004, &mut Dice::new(1, 9));
-            let power = series.iter().map(|value| value * value).sum::<f64>() / 20_000.0;
-            assert!((0.8..1.25).contains(&power), "{color:?}: {power}");
-        }
-    }
-
-    #[test]
-    fn readings_are_whole_steps() {
-        let sensor = Sensor {
+    fn sensor() -> Sensor {
+        Sensor {
             full_scale: 1000.0,
             noise: 0.1,
             color: Color::White,
@@ -271,8 +229,24 @@ mod tests {
             zero: 0.0,
             bits: 10,
             filter_s: 0.0,
-        };
-        let reading = sensor.quantized(123.4) / (1000.0 / 1024.0);
+            filter_order: 1,
+            bow: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_bow_is_nothing_at_both_ends_and_a_filter_of_second_order_arrives_later() {
+        let bowed = Sensor { bow: 1e-3, ..sensor() };
+        assert!(bowed.calibrated(0.0).abs() < 1e-12 && (bowed.calibrated(1000.0) - 1000.0).abs() < 1e-9);
+        assert!((bowed.calibrated(500.0) - 501.0).abs() < 1e-9);
+        let steps: Vec<f64> = (0..100).map(|index| if index < 10 { 0.0 } else { 1.0 }).collect();
+        let after = |filter_order| Sensor { filter_s: 5e-3, filter_order, ..sensor() }.filtered(&steps, 1e-3);
+        assert!(after(2)[14] < after(1)[14] && after(2)[99] > 0.99);
+    }
+
+    #[test]
+    fn readings_are_whole_steps() {
+        let reading = sensor().quantized(123.4) / (1000.0 / 1024.0);
         assert!((reading - reading.round()).abs() < 1e-9);
     }
 }

@@ -6,6 +6,7 @@ use crate::friction::Friction;
 use crate::mechanism::{Mechanism, Moment};
 use crate::muscle::{Parts, StaticForce};
 use crate::protocol::Path;
+use crate::region::Load;
 
 /// What happened along one path, at its fine step.
 #[derive(Debug, Clone, Default)]
@@ -216,6 +217,29 @@ const BRIDGE_STEPS: usize = 400;
 const BRIDGE_S: f64 = 2.0;
 const REST_S: f64 = 20.0;
 
+/// Longest step in which a hanging weight moves, s: the braid turns over within some micrometers.
+const HANG_STEP_S: f64 = 4e-4;
+
+impl Run<'_> {
+    /// Moves a hanging weight for the time of a step and tells what the sensors see at its end.
+    fn hang(&mut self, load: &Load, to_pa: f64, dt_s: f64, recording: usize, end_s: f64) -> (f64, f64, f64) {
+        let parts = (dt_s / HANG_STEP_S).ceil().max(1.0);
+        let part_s = dt_s / parts;
+        let from_pa = self.last.map_or(to_pa, |last| last.gauge_pa);
+        let mut seen = (0.0, 0.0, 0.0);
+        for part in 1..=parts as usize {
+            let share = part as f64 / parts;
+            let (length_m, force_n) =
+                self.last.map_or((load.stops_m.1, load.weight_n), |last| (last.encoder_m, last.force_n));
+            let speed_m_per_s = (load.weight_n - force_n) / load.dashpot_n_s_per_m;
+            let length_m = (length_m + speed_m_per_s * part_s).clamp(load.stops_m.0, load.stops_m.1);
+            let time_s = end_s - dt_s * (1.0 - share);
+            seen = self.step(from_pa + (to_pa - from_pa) * share, length_m, part_s, recording, time_s, None);
+        }
+        seen
+    }
+}
+
 /// Runs along all paths in order; `known` holds, for the first of them, what [`Subject::along`] found.
 pub fn run(subject: &Subject, paths: &[Path], known: &[Vec<Known>], built: Vec<Built>) -> Vec<Trace> {
     let mut friction = subject.friction.clone();
@@ -262,8 +286,11 @@ pub fn run(subject: &Subject, paths: &[Path], known: &[Vec<Known>], built: Vec<B
         for index in 0..count {
             let time_s = index as f64 * path.dt_s;
             let known = known.get(recording).map(|known| &known[index]);
-            let (force_n, pressure_pa, length_m) =
-                run.step(path.pressure_pa[index], path.length_m[index], path.dt_s, recording, time_s, known);
+            let gauge_pa = path.pressure_pa[index];
+            let (force_n, pressure_pa, length_m) = match &path.load {
+                Some(load) if index > 0 => run.hang(load, gauge_pa, path.dt_s, recording, time_s),
+                _ => run.step(gauge_pa, path.length_m[index], path.dt_s, recording, time_s, known),
+            };
             trace.force_n.push(force_n);
             trace.pressure_pa.push(pressure_pa);
             trace.length_m.push(length_m);

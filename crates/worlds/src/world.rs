@@ -2,14 +2,20 @@
 
 use serde::Serialize;
 
-use crate::catalogue::Form;
+use crate::caliper::Caliper;
+use crate::catalogue::{Form, Half};
 use crate::draw::Dice;
-use crate::friction::{Amplitude, Element, Friction, Standstill};
+use crate::friction::{Amplitude, Element, Friction};
 use crate::lumped::LumpedMuscle;
 use crate::muscle::{Muscle, StaticForce};
-use crate::protocol::{KINDS, Kind, Region};
-use crate::sensors::{Color, Sensor, Sensors};
+use crate::noise::Color;
+use crate::protocol::{KINDS, Kind};
+use crate::region::Region;
+use crate::rubber::Rubber;
+use crate::sealed;
+use crate::sensors::{Sensor, Sensors};
 use crate::slices::SlicedMuscle;
+use crate::standstill::Standstill;
 
 /// Bench that a case comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -44,7 +50,7 @@ pub struct Attributes {
     pub bits: u32,
     /// Sampling rate: `slow`, `usual`, `fast`.
     pub rate: &'static str,
-    /// `none`, `usual` or `double`.
+    /// `none`, `usual` or `double`; or how else the dimensions were measured.
     pub caliper: &'static str,
     /// Whether memory goes on from recording to recording.
     pub continuous: bool,
@@ -56,6 +62,9 @@ pub struct Attributes {
     pub gaps: bool,
     /// What the best cylinder leaves of the force, beside the floor; known once a case is made.
     pub cylinder_misfit: &'static str,
+    /// How friction turns over after a reversal, where that is not by a stop operator.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn: Option<&'static str>,
     /// Estimation recordings.
     pub recordings: usize,
     /// Kinds of the estimation recordings.
@@ -95,8 +104,8 @@ pub struct World {
     pub plan: Vec<(Kind, f64)>,
     /// Recordings for estimation.
     pub estimation: usize,
-    /// Caliper's errors as a multiple of the usual ones.
-    pub caliper: f64,
+    /// Caliper.
+    pub caliper: Caliper,
     /// Whether memory goes on from recording to recording.
     pub continuous: bool,
     /// For the truth.
@@ -229,6 +238,8 @@ fn draw_sensors(dice: &mut Dice, demands: &Demands, muscle: &Muscle, force: &Sta
         zero: dice.sign() * dice.uniform(0.0, 2000.0),
         bits,
         filter_s: filter_s(dice),
+        filter_order: 1,
+        bow: 0.0,
     };
     let length = Sensor {
         full_scale: length_scale_m,
@@ -240,6 +251,8 @@ fn draw_sensors(dice: &mut Dice, demands: &Demands, muscle: &Muscle, force: &Sta
         // Encoders and lasers resolve better than the converter of the log.
         bits: bits.max(12),
         filter_s: filter_s(dice),
+        filter_order: 1,
+        bow: 0.0,
     };
     let cell = Sensor {
         full_scale: force_scale_n,
@@ -250,6 +263,8 @@ fn draw_sensors(dice: &mut Dice, demands: &Demands, muscle: &Muscle, force: &Sta
         zero: 0.0,
         bits,
         filter_s: filter_s(dice),
+        filter_order: 1,
+        bow: 0.0,
     };
     let pressure = Sensor { noise: 0.5 * level(dice) * pressure.full_scale, ..pressure };
     let length = Sensor { noise: 0.3 * level(dice) * length.full_scale, ..length };
@@ -262,6 +277,8 @@ fn draw_sensors(dice: &mut Dice, demands: &Demands, muscle: &Muscle, force: &Sta
         jitter: if dice.chance(0.3) { dice.uniform(0.01, 0.1) } else { 0.0 },
         stamps_show_jitter: dice.chance(0.5),
         gaps: if dice.chance(0.15) { dice.between(1, 3) } else { 0 },
+        lost: 0.0,
+        stamp_step_s: 0.0,
     }
 }
 
@@ -311,8 +328,12 @@ fn draw_plan(dice: &mut Dice, demands: &Demands, rate_hz: f64) -> (Vec<(Kind, f6
 
 impl World {
     /// Draws a world, or says why there is none.
-    pub fn draw(dice: &mut Dice, bench: Bench, demands: &Demands) -> Result<Self, Unmade> {
-        let muscle = Muscle::draw(dice);
+    pub fn draw(dice: &mut Dice, bench: Bench, demands: &Demands, half: Half) -> Result<Self, Unmade> {
+        let is_sealed = half == Half::Sealed;
+        let mut muscle = Muscle::draw(dice);
+        if is_sealed {
+            muscle.rubber = Rubber::draw_sealed(dice, muscle.shear_modulus_pa);
+        }
         let (force, wall) = match bench {
             Bench::Lumped => {
                 let wall = if muscle.thick_wall { "thick" } else { "thin" };
@@ -324,14 +345,20 @@ impl World {
                 (StaticForce::Slices(sliced), wall.to_owned())
             }
         };
-        let (friction, friction_name) = draw_friction(dice, &muscle, &force);
-        let sensors = draw_sensors(dice, demands, &muscle, &force);
-        let (plan, estimation) = draw_plan(dice, demands, sensors.rate_hz);
+        let (mut friction, friction_name) = draw_friction(dice, &muscle, &force);
+        let turn = is_sealed.then(|| sealed::world::redraw_friction(dice, &mut friction));
+        let mut sensors = draw_sensors(dice, demands, &muscle, &force);
+        let (plan, estimation) = if is_sealed {
+            sealed::world::redraw_sensors(dice, demands, &mut sensors);
+            sealed::world::draw_plan(dice, demands, sensors.rate_hz)
+        } else {
+            draw_plan(dice, demands, sensors.rate_hz)
+        };
         let margin_n = if demands.slack { -35.0 } else { dice.uniform(8.0, 20.0) };
         let fastest_m_per_s = if demands.slow { dice.uniform(0.06, 0.1) } else { dice.uniform(0.03, 0.1) };
         let taut = taut(&force, &friction, &muscle, margin_n);
         let deepest = taut.iter().copied().fold(0.0, f64::max);
-        let region = Region {
+        let mut region = Region {
             least: taut[0].clamp(-0.008, -0.001),
             most: (deepest * dice.uniform(0.8, 0.97)).min(0.27),
             taut,
@@ -341,11 +368,23 @@ impl World {
             fastest_m_per_s,
             highest_hz: if demands.fast { dice.uniform(4.0, 9.0) } else { dice.log_uniform(1.0, 8.0) },
             bandwidths_hz: (dice.uniform(6.0, 20.0), dice.uniform(2.5, 10.0)),
+            regulator: None,
+            hang: None,
         };
         if region.most < 0.06 {
             return Err(Unmade::NoStroke);
         }
-        let caliper = [0.0, 1.0, 2.0][dice.weighted(&[0.15, 0.65, 0.2])];
+        if is_sealed {
+            region.regulator = sealed::world::draw_regulator(dice);
+            let load = sealed::world::draw_load(dice, &force, &muscle, &region);
+            let lifted = self::taut(&force, &friction, &muscle, load.weight_n);
+            region.hang = Some((load, lifted));
+        }
+        let caliper = if is_sealed {
+            sealed::world::draw_caliper(dice)
+        } else {
+            Caliper::Normal([0.0, 1.0, 2.0][dice.weighted(&[0.15, 0.65, 0.2])])
+        };
         let continuous = dice.chance(0.6);
         let relative = sensors.force.noise / sensors.force.full_scale;
         let attributes = Attributes {
@@ -367,12 +406,13 @@ impl World {
                 usual if usual <= 500.0 => "usual",
                 _ => "fast",
             },
-            caliper: ["none", "usual", "double"][caliper as usize],
+            caliper: caliper.name(),
             continuous,
             filtered: sensors.force.filter_s > 0.0,
             jitter: sensors.jitter > 0.0,
             gaps: sensors.gaps > 0,
             cylinder_misfit: "unknown",
+            turn,
             recordings: estimation,
             protocols: plan[..estimation].iter().map(|part| part.0).collect(),
         };

@@ -20,25 +20,6 @@ struct TruthFile<'a> {
     cases: &'a [Truth],
 }
 
-/// The muscle as a caliper finds it: 0.3 mm of length, 0.07 mm of radius, 0.3°, 0.03 mm of wall and a fifth of the modulus, rms.
-fn muscle_toml(case: &Case) -> String {
-    let muscle = &case.world.muscle;
-    let mut dice = Dice::new(case.caliper_seed, 3);
-    let mut error = |rms: f64| case.world.caliper * rms * dice.normal();
-    let rest_length_mm = 1e3 * muscle.rest_length_m + error(0.3);
-    let rest_radius_mm = 1e3 * muscle.rest_radius_m + error(0.07);
-    let braid_angle_deg = muscle.braid_angle_rad.to_degrees() + error(0.3);
-    let wall_thickness_mm = (1e3 * muscle.wall_m + error(0.03)).max(0.3);
-    let strand_modulus_gpa = 1e-9 * muscle.strand_modulus_pa * (1.0 + error(0.2)).clamp(0.4, 1.8);
-    format!(
-        "rest_length_mm = {rest_length_mm:.2}\nrest_radius_mm = {rest_radius_mm:.3}\nbraid_angle_deg = {braid_angle_deg:.2}\n\
-         wall_thickness_mm = {wall_thickness_mm:.3}\nstrand_count = {}\nstrand_diameter_mm = {:.3}\n\
-         strand_modulus_gpa = {strand_modulus_gpa:.2}\n",
-        muscle.strand_count,
-        1e3 * muscle.strand_diameter_m,
-    )
-}
-
 fn recording_csv(log: &Log) -> String {
     let mut text = String::with_capacity(48 * log.time_s.len());
     let with_temperature = !log.temperature_c.is_empty();
@@ -70,7 +51,8 @@ fn write_case(folder: &Path, request: &Request, index: usize) -> io::Result<Trut
     let (files, apart) = (folder.join(&case.truth.case), folder.join("truth").join(&case.truth.case));
     fs::create_dir_all(&files)?;
     fs::create_dir_all(&apart)?;
-    fs::write(files.join("muscle.toml"), muscle_toml(&case))?;
+    let muscle_toml = case.world.caliper.muscle_toml(&case.world.muscle, &mut Dice::new(case.caliper_seed, 3));
+    fs::write(files.join("muscle.toml"), muscle_toml)?;
     for (recording, log) in case.logs.iter().enumerate() {
         let name = if recording < case.world.estimation {
             format!("e{}.csv", recording + 1)
@@ -90,10 +72,7 @@ pub fn write_all(folder: &Path, request: &Request) -> io::Result<Vec<Truth>> {
         .into_par_iter()
         .map(|index| write_case(folder, request, index))
         .collect::<io::Result<_>>()?;
-    let half = match request.half {
-        crate::catalogue::Half::Choose => "choose",
-        crate::catalogue::Half::Report => "report",
-    };
+    let half = request.half.name();
     let mut text = serde_json::to_string_pretty(&TruthFile { seed: request.seed, half, cases: &cases })?;
     text.push('\n');
     fs::write(folder.join("truth.json"), text)?;
@@ -138,7 +117,7 @@ mod tests {
 
     #[test]
     fn what_is_concealed_shows_and_the_muscle_stays_taut() {
-        for half in [Half::Choose, Half::Report] {
+        for half in [Half::Choose, Half::Report, Half::Sealed] {
             let request = Request { seed: 9, cases: 2, half, bench: None, kind: Some(CaseKind::One) };
             for index in 0..request.cases {
                 let case = Case::draw(&request, index);

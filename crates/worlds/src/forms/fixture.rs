@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Built, Channel, Compliance, Delay, Setting, size};
+use super::{Built, Channel, Compliance, Delay, Lateness, Setting, Spring, size};
 use crate::draw::Dice;
 use crate::mechanism::{Mechanism, Moment};
 
@@ -14,7 +14,7 @@ fn delay(dice: &mut Dice, u: f64, jitter: f64) -> Built {
         Channel::Length => 1.0,
         Channel::Force => 2.0,
     };
-    Built { delay: Some(Delay { channel, delay_s, jitter }), ..Built::default() }
+    Built { delay: Some(Delay { channel, delay_s, lateness: Lateness::Wandering(jitter) }), ..Built::default() }
         .with("delay_s", delay_s)
         .with("channel_of_pressure_length_force", number)
 }
@@ -30,19 +30,20 @@ pub fn delay_wandering(dice: &mut Dice, u: f64, _: &Setting) -> Built {
     delay(dice, u, jitter)
 }
 
-fn compliance(stiffness_n_per_m: f64, hardening_n: f64) -> Built {
-    Built { compliance: Some(Compliance { stiffness_n_per_m, hardening_n }), ..Built::default() }
+fn compliance(stiffness_n_per_m: f64, spring: Spring) -> Built {
+    Built { compliance: Some(Compliance { stiffness_n_per_m, spring }), ..Built::default() }
         .with("stiffness_n_per_mm", 1e-3 * stiffness_n_per_m)
 }
 
 /// A linear spring in series: 20 to 500 N/mm.
 pub fn compliance_linear(_: &mut Dice, u: f64, _: &Setting) -> Built {
-    compliance(size(1.0 - u, 2e4, 5e5), f64::INFINITY)
+    compliance(size(1.0 - u, 2e4, 5e5), Spring::Linear)
 }
 
 /// A cable in series that hardens as it straightens.
 pub fn compliance_hardening(dice: &mut Dice, u: f64, setting: &Setting) -> Built {
-    compliance(size(1.0 - u, 2e4, 5e5), dice.uniform(0.1, 0.5) * setting.forces_n.1.max(50.0))
+    let hardening_n = dice.uniform(0.1, 0.5) * setting.forces_n.1.max(50.0);
+    compliance(size(1.0 - u, 2e4, 5e5), Spring::Hardening { hardening_n })
 }
 
 /// A mass between muscle and load cell.
@@ -112,8 +113,9 @@ mod tests {
 
     #[test]
     fn a_hardening_spring_extends_less() {
-        let linear = Compliance { stiffness_n_per_m: 5e4, hardening_n: f64::INFINITY };
-        let hardening = Compliance { stiffness_n_per_m: 5e4, hardening_n: 100.0 };
+        let linear = Compliance { stiffness_n_per_m: 5e4, spring: Spring::Linear };
+        let spring = Spring::Hardening { hardening_n: 100.0 };
+        let hardening = Compliance { stiffness_n_per_m: 5e4, spring };
         assert!((linear.extension_m(100.0) - 2e-3).abs() < 1e-12);
         assert!(hardening.extension_m(100.0) < linear.extension_m(100.0));
     }

@@ -10,7 +10,7 @@ fn reach_m(u: f64) -> f64 {
     size(u, 2e-4, 5e-3)
 }
 
-fn presliding(element: Element, reach_m: f64) -> Built {
+pub(crate) fn presliding(element: Element, reach_m: f64) -> Built {
     Built { element: Some(element), ..Built::default() }.with("reach_mm", 1e3 * reach_m).at(
         "travel_mm",
         0.0,
@@ -81,7 +81,7 @@ impl Mechanism for RubberLoop {
     }
 }
 
-fn rubber(element: Element, constant_n: f64, of_bladder: f64) -> Built {
+pub(crate) fn rubber(element: Element, constant_n: f64, of_bladder: f64) -> Built {
     Built::one(RubberLoop { element, last_m: None, constant_n, of_bladder })
         .with("size_n", constant_n)
         .with("share_of_bladder", of_bladder)

@@ -6,7 +6,7 @@ use crate::mechanism::{Mechanism, Moment};
 
 /// What is remembered.
 #[derive(Debug, Clone, Copy)]
-enum Driver {
+pub(crate) enum Driver {
     Bladder,
     Gas,
 }
@@ -47,7 +47,7 @@ impl Mechanism for Branches {
     }
 }
 
-fn branches(driver: Driver, terms: &[(f64, f64)], dice: &mut Dice) -> Built {
+pub(crate) fn branches(driver: Driver, terms: &[(f64, f64)], dice: &mut Dice) -> Built {
     let settled = if dice.chance(0.5) { 1.0 } else { dice.uniform(0.3, 1.0) };
     let branches: Vec<(f64, f64, f64)> = terms.iter().map(|&(weight, constant_s)| (weight, constant_s, 0.0)).collect();
     let built = Built::one(Branches { driver, branches, started: false, settled });
@@ -55,7 +55,7 @@ fn branches(driver: Driver, terms: &[(f64, f64)], dice: &mut Dice) -> Built {
 }
 
 /// A time constant that the recordings can show, s.
-fn shown_s(dice: &mut Dice, setting: &Setting) -> f64 {
+pub(crate) fn shown_s(dice: &mut Dice, setting: &Setting) -> f64 {
     let longest_s = setting.durations_s.iter().copied().fold(0.0, f64::max);
     dice.log_uniform(0.5, (0.3 * longest_s).clamp(2.0, 60.0))
 }
@@ -96,7 +96,7 @@ pub fn relaxation_burgers(dice: &mut Dice, u: f64, setting: &Setting) -> Built {
     branches(Driver::Bladder, &[(0.65 * together, first_s), (0.35 * together, 25.0 * first_s)], dice)
 }
 
-fn creep_size(dice: &mut Dice, u: f64) -> f64 {
+pub(crate) fn creep_size(dice: &mut Dice, u: f64) -> f64 {
     dice.sign() * size(u, 0.01, 0.05)
 }
 
@@ -172,7 +172,7 @@ impl Mechanism for Mullins {
 }
 
 /// Error function to 1.5e-7 (Abramowitz and Stegun 7.1.26).
-fn error_function(x: f64) -> f64 {
+pub(crate) fn error_function(x: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.327_591_1 * x.abs());
     let series =
         t * (0.254_829_592 + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));

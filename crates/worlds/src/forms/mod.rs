@@ -72,26 +72,77 @@ pub struct Delay {
     pub channel: Channel,
     /// By how much, s.
     pub delay_s: f64,
-    /// Share of the delay that varies slowly.
-    pub jitter: f64,
+    /// How the delay varies.
+    pub lateness: Lateness,
 }
 
-/// A spring between the muscle and the encoder's length: `x = (F_h/k) ln(1 + F/F_h)`, or `F/k` for infinite `F_h`.
+/// How a delay varies along a recording.
+#[derive(Debug, Clone, Copy)]
+pub enum Lateness {
+    /// By this share of it, slowly to and fro; 0 for a constant delay.
+    Wandering(f64),
+    /// From half of it, by so much per second.
+    Growing {
+        /// Growth, s/s.
+        per_s: f64,
+    },
+    /// Half of it, and the time since the channel was asked last.
+    Polled {
+        /// Period of asking, s.
+        period_s: f64,
+    },
+}
+
+/// A spring between the muscle and the encoder's length.
 #[derive(Debug, Clone, Copy)]
 pub struct Compliance {
-    /// Stiffness at no force, N/m.
+    /// Stiffness `k`, N/m: where a spring is not linear, the one that its law says.
     pub stiffness_n_per_m: f64,
-    /// Force at which the stiffness has doubled, N.
-    pub hardening_n: f64,
+    /// Law.
+    pub spring: Spring,
+}
+
+/// Law of a spring in series; each is linear where it is pushed.
+#[derive(Debug, Clone, Copy)]
+pub enum Spring {
+    /// `x = F/k`.
+    Linear,
+    /// `x = (F_h/k) ln(1 + F/F_h)`, with the stiffness `k` at no force.
+    Hardening {
+        /// Force at which the stiffness has doubled, N.
+        hardening_n: f64,
+    },
+    /// `x = (F_r/k) (F/F_r)^i`, with the secant `k` at `F_r`.
+    Power {
+        /// Exponent `i`.
+        exponent: f64,
+        /// Force of the secant, N.
+        reference_n: f64,
+    },
+    /// `x = F/k` up to a preload, and beyond it with a share of the stiffness.
+    Preloaded {
+        /// Preload, N.
+        preload_n: f64,
+        /// Share of the stiffness that is left.
+        softer: f64,
+    },
 }
 
 impl Compliance {
     /// Extension under a force, m.
     pub fn extension_m(&self, force_n: f64) -> f64 {
-        if self.hardening_n.is_infinite() || force_n <= 0.0 {
-            force_n / self.stiffness_n_per_m
-        } else {
-            self.hardening_n / self.stiffness_n_per_m * (force_n / self.hardening_n).ln_1p()
+        let stiffness_n_per_m = self.stiffness_n_per_m;
+        match self.spring {
+            Spring::Hardening { hardening_n } if force_n > 0.0 => {
+                hardening_n / stiffness_n_per_m * (force_n / hardening_n).ln_1p()
+            }
+            Spring::Power { exponent, reference_n } if force_n > 0.0 => {
+                reference_n / stiffness_n_per_m * (force_n / reference_n).powf(exponent)
+            }
+            Spring::Preloaded { preload_n, softer } if force_n > preload_n => {
+                (preload_n + (force_n - preload_n) / softer) / stiffness_n_per_m
+            }
+            _ => force_n / stiffness_n_per_m,
         }
     }
 }

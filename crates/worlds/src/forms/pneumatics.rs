@@ -24,7 +24,7 @@ enum LagKind {
 }
 
 /// Ambient pressure, Pa.
-const AMBIENT_PA: f64 = 101_325.0;
+pub(crate) const AMBIENT_PA: f64 = 101_325.0;
 /// Critical ratio of ISO 6358 for a hose with fittings.
 const CRITICAL: f64 = 0.35;
 

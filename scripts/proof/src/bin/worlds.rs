@@ -27,7 +27,7 @@ struct Args {
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
 
-    /// Half of the forms: one to choose methods by, one to report outcomes on.
+    /// Half of the forms: one to choose methods by, one to report outcomes on; or the third part, with other worlds as well.
     #[arg(long, default_value = "choose")]
     half: HalfArg,
 
@@ -44,6 +44,7 @@ struct Args {
 enum HalfArg {
     Choose,
     Report,
+    Sealed,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -68,6 +69,7 @@ fn run(args: &Args) -> Result<()> {
         half: match args.half {
             HalfArg::Choose => Half::Choose,
             HalfArg::Report => Half::Report,
+            HalfArg::Sealed => Half::Sealed,
         },
         bench: args.bench.map(|bench| match bench {
             BenchArg::Lumped => Bench::Lumped,
