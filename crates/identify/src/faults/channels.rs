@@ -1,6 +1,4 @@
-//! Channels that are swapped or turned, and recordings that contradict one another.
-
-use std::collections::BTreeMap;
+//! Channels that are swapped or turned.
 
 use pam_core::muscle::Muscle;
 use pam_core::recording::Recording;
@@ -126,62 +124,3 @@ pub fn wrong_sign(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
         remedy: "force_N = -1 * force_N",
     })
 }
-
-/// Recordings whose forces differ by more than hysteresis and noise can make, at equal pressure and length.
-///
-/// # Errors
-/// Where samples cannot be read back.
-pub fn disagreeing(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> {
-    if gates.len() < 2 {
-        return Ok(None);
-    }
-    let highest_pa = gates
-        .iter()
-        .filter_map(|gate| gate.quality.channel("pressure"))
-        .map(|channel| channel.highest)
-        .fold(0.0, f64::max);
-    let mut tables: Vec<BTreeMap<(i64, i64), f64>> = Vec::new();
-    for gate in gates {
-        let look = Look::at(&gate.recording)?;
-        let mut sums: BTreeMap<(i64, i64), (f64, f64)> = BTreeMap::new();
-        for ((&pressure_pa, &length_m), &force_n) in look.pressure_pa.iter().zip(&look.length_m).zip(&look.force_n) {
-            // Cells of 4 % of the highest pressure and half a percent of contraction.
-            let cell = (
-                (25.0 * pressure_pa / highest_pa).round() as i64,
-                (200.0 * muscle.contraction_ratio(length_m)).round() as i64,
-            );
-            // Low pressures hold slack and dead band, where ratios mean nothing.
-            if pressure_pa > 0.3 * highest_pa {
-                let sum = sums.entry(cell).or_default();
-                *sum = (sum.0 + force_n, sum.1 + 1.0);
-            }
-        }
-        tables.push(sums.into_iter().map(|(cell, (sum, count))| (cell, sum / count)).collect());
-    }
-    for (index, table) in tables.iter().enumerate() {
-        for (other, earlier) in tables[..index].iter().enumerate() {
-            let mut ratios: Vec<f64> = table
-                .iter()
-                .filter_map(|(cell, force_n)| earlier.get(cell).map(|other_n| (force_n, other_n)))
-                .filter(|(_, other_n)| other_n.abs() > 1.0)
-                .map(|(force_n, other_n)| force_n / other_n)
-                .collect();
-            if ratios.len() < 4 {
-                continue;
-            }
-            ratios.sort_unstable_by(f64::total_cmp);
-            let ratio = ratios[ratios.len() / 2];
-            if !(1.0 / MOST_DIFFERENT..=MOST_DIFFERENT).contains(&ratio) {
-                return Ok(Some(Fault::Disagree {
-                    path: gates[index].recording.path.clone(),
-                    other: gates[other].recording.path.clone(),
-                    ratio,
-                }));
-            }
-        }
-    }
-    Ok(None)
-}
-
-/// Ratio of forces that hysteresis, drift and a little gain explain at most.
-const MOST_DIFFERENT: f64 = 1.4;
