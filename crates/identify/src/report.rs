@@ -298,7 +298,7 @@ const TARE_SHARE: f64 = 0.02;
 /// are far off.
 pub fn implausible(found: &Identified) -> Option<String> {
     let modulus_pa = found.model.strand_modulus_pa();
-    let ends = |side: fn(f64, f64) -> f64, first: f64, pick: fn(&pam_core::quality::ChannelQuality) -> f64| {
+    let ends = |side: fn(f64, f64) -> f64, first: f64, pick: fn(&ChannelQuality) -> f64| {
         found.estimation.iter().filter_map(|prepared| prepared.quality.channel("force")).map(pick).fold(first, side)
     };
     let range_n =

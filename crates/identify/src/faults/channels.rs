@@ -93,12 +93,23 @@ pub fn swapped(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
             "force",
             ideal_correlation(muscle, &look.force_n, &look.length_m, &look.pressure_pa),
         ));
-    }
-    if let Some(length_m) = as_length_m(&look.pressure_pa, muscle) {
-        candidates.push(("pressure", "length", ideal_correlation(muscle, &look.length_m, &length_m, &look.force_n)));
-    }
-    if let Some(length_m) = as_length_m(&look.force_n, muscle) {
-        candidates.push(("length", "force", ideal_correlation(muscle, &look.pressure_pa, &length_m, &look.length_m)));
+    } else {
+        // A length that is one of this muscle is no other channel: forces of 200 to 260 N could be millimeters of it as well, and in
+        // a short piece of a small loop the correlations of both are chance.
+        if let Some(length_m) = as_length_m(&look.pressure_pa, muscle) {
+            candidates.push((
+                "pressure",
+                "length",
+                ideal_correlation(muscle, &look.length_m, &length_m, &look.force_n),
+            ));
+        }
+        if let Some(length_m) = as_length_m(&look.force_n, muscle) {
+            candidates.push((
+                "length",
+                "force",
+                ideal_correlation(muscle, &look.pressure_pa, &length_m, &look.length_m),
+            ));
+        }
     }
     let mut best: Option<(&'static str, &'static str, f64)> = None;
     for candidate in candidates {
@@ -123,4 +134,43 @@ pub fn wrong_sign(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
         correlation,
         remedy: "force_N = -1 * force_N",
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::prepare::gate;
+    use pam_core::recording::{Repairs, Samples};
+
+    /// A small loop at one pressure, whose gauge wanders: the force follows that and hardly the length.
+    fn small_loop(exchanged: bool) -> Gated {
+        let muscle = crate::testing::model();
+        let time_s: Vec<f64> = (0..400).map(|row| 0.01 * f64::from(row)).collect();
+        let pressure_pa: Vec<f64> = (0..400).map(|row| 3e5 + 40.0 * f64::from(row * 7919 % 101)).collect();
+        let length_m: Vec<f64> = time_s.iter().map(|t| 0.24 + 1e-3 * (1.5 * t).sin()).collect();
+        let force_n: Vec<f64> = (0..400).map(|row| muscle.force_n(3e5, length_m[row], 0.0) - 60.0).collect();
+        let (length_m, force_n) = if exchanged {
+            // Millimeters under the name of newtons, and the other way round.
+            (force_n.iter().map(|n| 1e-3 * n).collect(), length_m.iter().map(|m| 1e3 * m).collect())
+        } else {
+            (length_m, force_n)
+        };
+        let samples = Samples::from_columns(&time_s, &pressure_pa, &length_m, &force_n);
+        let segments = vec![0..samples.n_rows(); 1];
+        let (sha256, repairs) = (String::new(), Repairs::default());
+        let path = "loop.csv".to_owned();
+        let recording = Recording { path, sha256, samples, segments, repairs, ignored_columns: Vec::new() };
+        gate(vec![recording]).unwrap().remove(0)
+    }
+
+    #[test]
+    fn a_small_loop_is_not_taken_for_swapped_channels_and_lengths_that_are_none_are() {
+        let model = crate::testing::model();
+        let found = |gate: &Gated| swapped(gate, &Look::at(&gate.recording).unwrap(), model.muscle());
+        let in_order = small_loop(false);
+        assert_eq!(found(&in_order), None);
+        let exchanged = small_loop(true);
+        assert!(found(&exchanged).is_some(), "lengths {:?}", exchanged.quality.channel("length"));
+    }
 }
