@@ -217,6 +217,16 @@ fn every_bad_recording_gets_one_line_with_place_and_remedy() {
 }
 
 #[test]
+fn a_short_piece_of_a_small_loop_has_its_channels_where_they_are() {
+    let bench = Bench::new();
+    let steps = shipped("length-steps.csv");
+    let piece: Vec<&str> = steps.lines().take(1).chain(steps.lines().skip(46).take(261)).collect();
+    bench.file("piece.csv", piece.join("\n"));
+    let output = bench.run(&format!("piece.csv --check {TAIL}"));
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
 fn one_pressure_is_fitted_with_a_word_where_its_gauge_is_alive() {
     let bench = Bench::new();
     let at_300_kpa = |text: &str| -> String {
