@@ -9,7 +9,7 @@ use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
 use pam_core::recording::Recording;
-use pam_identification::faults::{spikes, twice, zero};
+use pam_identification::faults::{disagree, spikes, twice, zero};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
@@ -83,6 +83,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     for prepared in found.estimation.iter().chain(&found.validation) {
         artifact.warnings.extend(spikes::warning(&prepared.recording, &prepared.quality)?);
     }
+    let prepared = found.estimation.iter().chain(&found.validation);
+    let recordings: Vec<_> = prepared.map(|prepared| (&prepared.recording, &prepared.quality)).collect();
+    artifact.warnings.extend(disagree::notes(&recordings, &found.muscle)?);
     // Instruments are suspected where a fit ends at no muscle; what they explain is searched for then.
     if implausible(&found).is_some() {
         artifact.warnings.extend(zero::explain(&found)?);

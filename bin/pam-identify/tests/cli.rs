@@ -217,6 +217,32 @@ fn every_bad_recording_gets_one_line_with_place_and_remedy() {
 }
 
 #[test]
+fn a_short_piece_of_a_small_loop_has_its_channels_where_they_are() {
+    let bench = Bench::new();
+    let steps = shipped("length-steps.csv");
+    let piece: Vec<&str> = steps.lines().take(1).chain(steps.lines().skip(46).take(261)).collect();
+    bench.file("piece.csv", piece.join("\n"));
+    let output = bench.run(&format!("piece.csv --check {TAIL}"));
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn one_pressure_is_fitted_with_a_word_where_its_gauge_is_alive() {
+    let bench = Bench::new();
+    let at_300_kpa = |text: &str| -> String {
+        let rows = text.lines().enumerate().filter(|(line, text)| {
+            *line == 0 || text.split(',').nth(1).is_some_and(|p| (p.parse::<f64>().unwrap() - 300.0).abs() < 1.5)
+        });
+        rows.map(|(_, text)| format!("{text}\n")).collect()
+    };
+    bench.file("one.csv", at_300_kpa(&shipped("isobaric-triangles.csv")));
+    let output = bench.run(&format!("one.csv {TAIL}"));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_ne!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("trust this model at that pressure alone, or add a recording at another"), "{said}");
+}
+
+#[test]
 fn every_bad_command_line_gets_one_line_with_the_remedy() {
     let bench = Bench::new();
     bench.file("flat.csv", reworked(|_, [t, _, l, f]| [t, 300.0, l, f]));

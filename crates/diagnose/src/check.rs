@@ -64,6 +64,8 @@ fn channels(gated: &Gated) -> Result<(), DiagnoseError> {
     for (name, scale, unit) in [("pressure", 1e-3, "kPa"), ("force", 1.0, "N")] {
         if let Some(channel) = gated.quality.channel(name)
             && channel.clipped_high_share > SATURATED
+            // Where its steps are as coarse as its noise, a channel that rests shows one value as well.
+            && channel.ends_high()
         {
             return Err(DiagnoseError::Saturated {
                 path: path(),
@@ -91,4 +93,32 @@ pub(crate) fn long_enough(track: &Track, prepared: &[Prepared]) -> Result<(), Di
         have_s: have as f64 * per_instant_s,
         more_s: ((needed - have) as f64 * per_instant_s).ceil(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use pam_core::recording::{Repairs, Samples};
+
+    /// A load that is lifted and then rests, on a load cell with steps of so many newtons.
+    fn rests(step_n: f64) -> Gated {
+        let time_s: Vec<f64> = (0..1000).map(|row| 0.01 * f64::from(row)).collect();
+        let (pressure_pa, length_m): (Vec<f64>, Vec<f64>) =
+            time_s.iter().map(|t| (3e5 + 1e3 * t, 0.24 + 1e-3 * (5.0 - t).max(0.0))).unzip();
+        let noisy_n = |row: usize| 60.0 * time_s[row].min(5.0) + 0.4 * (row * 7919 % 101) as f64 / 101.0;
+        let force_n: Vec<f64> = (0..1000).map(|row| (noisy_n(row).min(300.0) / step_n).round() * step_n).collect();
+        let samples = Samples::from_columns(&time_s, &pressure_pa, &length_m, &force_n);
+        let segments = vec![0..samples.n_rows(); 1];
+        let (sha256, repairs) = (String::new(), Repairs::default());
+        let path = "rests.csv".to_owned();
+        let recording = Recording { path, sha256, samples, segments, repairs, ignored_columns: Vec::new() };
+        gate(vec![recording]).unwrap().remove(0)
+    }
+
+    #[test]
+    fn a_force_that_rests_between_coarse_steps_is_not_saturated_and_one_that_should_flicker_is() {
+        assert!(channels(&rests(4.0)).is_ok());
+        assert!(matches!(channels(&rests(0.01)), Err(DiagnoseError::Saturated { .. })));
+    }
 }

@@ -4,6 +4,7 @@ use pam_core::artifact::model::{CompositeEntry, ParameterEntry, ParameterStatus}
 use pam_core::force::Parameter;
 use pam_core::force::columns::{BLADDER, FRICTION};
 use pam_core::muscle::{Dimension, MuscleFile};
+use pam_core::quality::ChannelQuality;
 use pam_optim::summary::Summary;
 
 use crate::faults::lag::Lag;
@@ -191,6 +192,17 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
             found.laws[0].standstill.words()
         ));
     }
+    let pressures = || found.estimation.iter().filter_map(|prepared| prepared.quality.channel("pressure"));
+    let lowest_pa = pressures().map(|channel| channel.lowest).fold(f64::INFINITY, f64::min);
+    let highest_pa = pressures().map(|channel| channel.highest).fold(f64::NEG_INFINITY, f64::max);
+    // White noise covers some ten standard deviations in a million samples.
+    if highest_pa - lowest_pa <= 12.0 * pressures().map(ChannelQuality::any_noise).fold(0.0, f64::max) {
+        warnings.push(format!(
+            "pressure stays near {:.1} kPa in every estimation recording, so that only the shape of the force over length tells the \
+             gas from the rubber: trust this model at that pressure alone, or add a recording at another",
+            0.5e-3 * (lowest_pa + highest_pa)
+        ));
+    }
     let doubtful: Vec<(&str, f64)> = prepared()
         .map(|prepared| {
             let n_rows = prepared.recording.samples.n_rows().max(1) as f64;
@@ -293,7 +305,7 @@ const TARE_SHARE: f64 = 0.02;
 /// are far off.
 pub fn implausible(found: &Identified) -> Option<String> {
     let modulus_pa = found.model.strand_modulus_pa();
-    let ends = |side: fn(f64, f64) -> f64, first: f64, pick: fn(&pam_core::quality::ChannelQuality) -> f64| {
+    let ends = |side: fn(f64, f64) -> f64, first: f64, pick: fn(&ChannelQuality) -> f64| {
         found.estimation.iter().filter_map(|prepared| prepared.quality.channel("force")).map(pick).fold(first, side)
     };
     let range_n =

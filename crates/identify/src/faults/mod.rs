@@ -3,12 +3,13 @@
 //! [`ranges`] finds units under the wrong name and recordings of another muscle from ranges alone;
 //! [`spikes`] and [`frozen`] find samples that no muscle makes; [`scale`] finds units that ranges do not show, [`zero`], after a fit,
 //! a gauge whose zero is elsewhere;
-//! [`channels`] finds swapped channels, a force of the wrong sign and recordings that disagree with one another;
+//! [`channels`] finds swapped channels and a force of the wrong sign; [`disagree`] finds recordings that contradict one another;
 //! [`twice`] finds a recording that is there twice; [`lag`] finds a channel that lags the others; [`reading`] says what an
 //! instrument would have to read wrong where a model that is known misses a recording. All but the last two refuse the recording,
 //! because a fit would absorb the fault in its parameters.
 
 pub mod channels;
+pub mod disagree;
 pub mod frozen;
 pub mod lag;
 pub mod ranges;
@@ -195,5 +196,5 @@ pub fn find(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> 
             return Ok(Some(fault));
         }
     }
-    channels::disagreeing(gates, muscle)
+    disagree::find(gates, muscle)
 }

@@ -26,9 +26,8 @@ fuzz_target!(|data: &[u8]| {
     }
     if let Ok(prepared) = prepare(short_recording(), &artifact) {
         let _ = outside(&prepared, &artifact.domain);
-        let rest_m = artifact.geometry.rest_length_m;
-        let _ = augmented_forces_n(&prepared, &model.without_events(), artifact.direction, rest_m);
-        let _ = evaluate_augmented(std::slice::from_ref(&prepared), &model, artifact.direction, rest_m);
+        let _ = augmented_forces_n(&prepared, &model.without_events(), artifact.direction);
+        let _ = evaluate_augmented(std::slice::from_ref(&prepared), &model, artifact.direction);
     }
     let _ = Uncertainty::new(&artifact).map_err(|error| error.to_string());
     if let Ok(inverse_box) = InverseBox::of(&artifact.domain) {

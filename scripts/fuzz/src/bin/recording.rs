@@ -44,7 +44,7 @@ fuzz_target!(|data: &[u8]| {
     if let Ok(prepared) = prepare(recording, &model) {
         let _ = outside(&prepared, &model.domain);
         let augmented = model.augmented_model();
-        let _ = augmented_forces_n(&prepared, &augmented, model.direction, model.geometry.rest_length_m);
+        let _ = augmented_forces_n(&prepared, &augmented, model.direction);
     }
     // A fit takes a hundred times as long as all of the above.
     if bytes.len() % 16 == 0
