@@ -147,14 +147,15 @@ fn pairs(
         .fold(0.0, f64::max);
     let mut tables = Vec::new();
     let mut pairs = Vec::new();
-    for (index, (recording, _)) in recordings.iter().enumerate() {
+    let with_force = |(_, (recording, _)): &(usize, &(&Recording, &RecordingQuality))| recording.samples.has_force();
+    for (index, (recording, _)) in recordings.iter().enumerate().filter(with_force) {
         let here = places(&Look::at(recording)?, muscle, highest_pa);
-        for (other, earlier) in tables.iter().enumerate() {
+        for (other, earlier) in &tables {
             if let Some(compared) = compare(&here, earlier) {
-                pairs.push((index, other, compared));
+                pairs.push((index, *other, compared));
             }
         }
-        tables.push(here);
+        tables.push((index, here));
     }
     Ok(pairs)
 }
