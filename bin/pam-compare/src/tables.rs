@@ -5,7 +5,7 @@ use pam_core::artifact::ComparisonArtifact;
 use pam_core::artifact::comparison::{ComparedParameter, Difference, Outcome};
 use pam_report::Table;
 use pam_report::number::{engineering, engineering_with_stderr, probability, significant};
-use pam_report::text::{shortened, wrapped};
+use pam_report::text::{told_apart, wrapped};
 
 /// Columns of a recording's name.
 const NAME: usize = 22;
@@ -58,15 +58,19 @@ fn errors(artifact: &ComparisonArtifact) -> String {
             fitted.to_owned(),
         ]);
     };
-    for recording in &artifact.recordings {
+    let names: Vec<&str> = artifact
+        .recordings
+        .iter()
+        .map(|recording| recording.path.rsplit('/').next().unwrap_or(&recording.path))
+        .collect();
+    for (recording, name) in artifact.recordings.iter().zip(told_apart(&names, NAME)) {
         let fitted = match (recording.fitted_by_a, recording.fitted_by_b) {
             (true, true) => "both",
             (true, false) => "A",
             (false, true) => "B",
             (false, false) => "",
         };
-        let name = recording.path.rsplit('/').next().unwrap_or(&recording.path);
-        add(shortened(name, NAME), fitted, &recording.errors.counted, "counted");
+        add(name, fitted, &recording.errors.counted, "counted");
         add(String::new(), "", &recording.errors.all, "all");
     }
     if artifact.recordings.len() > 1 {

@@ -15,16 +15,21 @@ use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
 use pam_report::PictureFormat;
 
-use crate::args::{Args, BladderArg, FormArg, FrictionArg};
+use crate::args::{Args, BladderArg, Example, FormArg, FrictionArg};
 use crate::{figure, tables};
 
 /// What `--example` writes.
-const EXAMPLE: &str = include_str!("../../../configs/muscle-nominal.toml");
+const MUSCLE: &str = include_str!("../../../configs/muscle-nominal.toml");
+const CHANNELS: &str = include_str!("../../../configs/bench.toml");
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let console = args.run.start()?;
-    if args.example {
-        write_example(EXAMPLE, args.out.as_deref(), &args.run, &console)?;
+    if let Some(example) = args.example {
+        let text = match example {
+            Example::Muscle => MUSCLE,
+            Example::Channels => CHANNELS,
+        };
+        write_example(text, args.out.as_deref(), &args.run, &console)?;
         return Ok(Verdict::Accepted);
     }
     let muscle_path = args.muscle.as_deref().context("--muscle is missing")?;

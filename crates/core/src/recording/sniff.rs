@@ -118,7 +118,8 @@ pub(crate) fn hints(start: &[u8], layout: Layout) -> Hints {
     let mut first = rows.next().map(&mut fields).unwrap_or_default();
     let names: Vec<String> = first.iter().map(|field| decoded(field)).collect();
     let is_value = |field: &Vec<u8>| number(field, layout.separator != b',').is_ok() || stamp_s(field).is_some();
-    let is_units = names.iter().any(|name| is_symbol(name)) && !first.iter().any(is_value);
+    // A single letter is a symbol by chance.
+    let is_units = names.iter().filter(|name| is_symbol(name)).count() > 1 && !first.iter().any(is_value);
     if is_units {
         first = rows.next().map(&mut fields).unwrap_or_default();
     }

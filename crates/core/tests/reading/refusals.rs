@@ -59,8 +59,8 @@ fn files_without_rows() {
     assert_snapshot!(plain(HEADER), @"log.csv: there are no rows; record again, or check that the logger closed the file");
     assert_snapshot!(below_header("0,1,2,3\n"), @"log.csv: there is only one row; at least 2 are needed: record for longer");
     assert_snapshot!(refusal(log_with_stamps([0.0, 1.0, 2.0]), &options(["--min-rows 100"])), @"log.csv: there are only 3 rows; at least 100 are needed: record for longer");
-    assert_snapshot!(refusal(format!("{HEADER}a,b,c,d\n"), &options(["--skip-bad-rows"])), @"log.csv: there are no rows; record again, or check that the logger closed the file");
-    assert_snapshot!(refusal(format!("{HEADER}a,b,c,d\n0,1,2,3\n1,1,1\n"), &options(["--skip-bad-rows"])), @"log.csv: there is only one row that can be used (1 skipped, the first at line 4: 3 fields where the header has 4); at least 2 are needed: record for longer");
+    assert_snapshot!(refusal(format!("{HEADER}a,b,c,d\n"), &options(["--skip-bad-rows"])), @r#"log.csv: there are no rows that can be used (1 skipped, the first at line 2: "a" in column "time_s" is not a number); check that the columns hold what the header says"#);
+    assert_snapshot!(refusal(format!("{HEADER}a,b,c,d\n0,1,2,3\n1,1,1\n"), &options(["--skip-bad-rows"])), @r#"log.csv: there is only one row that can be used (2 skipped, the first at line 2: "a" in column "time_s" is not a number); at least 2 are needed: record for longer"#);
 }
 
 #[test]
