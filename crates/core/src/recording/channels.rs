@@ -147,7 +147,7 @@ pub enum ChannelFault {
         key: &'static str,
     },
     /// A gain or an offset of no column.
-    #[error("[{quantity}] has a {key} but no column that it belongs to; add column = \"…\"")]
+    #[error("[{quantity}] has {key} but no column that it belongs to; add column = \"…\"")]
     NoColumn {
         /// The quantity.
         quantity: Quantity,
@@ -359,6 +359,11 @@ mod tests {
     }
 
     #[test]
+    fn the_shipped_example_is_right() {
+        Channels::parse(include_str!("../../../../configs/bench.toml"), Path::new("bench.toml")).unwrap();
+    }
+
+    #[test]
     fn every_mistake_gets_its_place_and_the_remedy() {
         assert_snapshot!(refusal("[pressure]\ncolum = \"x\"\n"), @"bench.toml:2:1: unknown field `colum`; did you mean `column`?");
         assert_snapshot!(refusal("[presure]\nunit = \"bar\"\n"), @"bench.toml:1:2: unknown field `presure`; did you mean `pressure`?");
@@ -366,7 +371,7 @@ mod tests {
         assert_snapshot!(refusal("\n[pressure]\nunit = \"Bahr\"\n"), @r#"bench.toml:2:1: [pressure] has the unit "Bahr", which is not known; did you mean "bar"? Else write kPa, Pa, MPa, bar or psi, and gain and offset for any other"#);
         assert_snapshot!(refusal("[force]\nunit = \"N\"\ncolumn = \"a\"\nvalue = 1\n"), @"bench.toml:1:1: [force] has both a column and a value; leave one of them out");
         assert_snapshot!(refusal("[force]\nunit = \"N\"\nvalue = 1\ngain = 2\n"), @"bench.toml:1:1: [force] has a value, which takes no gain; leave it out");
-        assert_snapshot!(refusal("[force]\nunit = \"N\"\noffset = 1\n"), @r#"bench.toml:1:1: [force] has a offset but no column that it belongs to; add column = "…""#);
+        assert_snapshot!(refusal("[force]\nunit = \"N\"\noffset = 1\n"), @r#"bench.toml:1:1: [force] has offset but no column that it belongs to; add column = "…""#);
         assert_snapshot!(refusal("[force]\nunit = \"N\"\ncolumn = \"a\"\ngain = 0\n"), @"bench.toml:1:1: [force] has gain = 0, which leaves nothing of the reading; write a finite number other than 0");
         assert_snapshot!(refusal("[force]\nunit = \"N\"\nrange = [5, 5]\n"), @"bench.toml:1:1: [force] has the range 5 to 5; write the lower end first, as in range = [0, 1000]");
         assert_snapshot!(refusal("[length]\nunit = \"mm\"\nrange = [0, 5]\n"), @"bench.toml:1:1: [length] takes no range, which only pressure and force have; leave it out");
