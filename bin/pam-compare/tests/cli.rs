@@ -149,7 +149,7 @@ fn bad_input_gets_one_line_and_no_file() {
             "error: log.csv: bench.toml [force] names column \"F\", which the file lacks",
         ),
         ("a.json b.json empty.csv", "error: empty.csv: the file holds no rows"),
-        ("a.json b.json log.csv --out a.json", "error: a.json"),
+        ("a.json b.json log.csv --out a.json", "error: cannot write a.json: it is also an input"),
         ("a.json b.json", "error: the following required arguments were not provided: <LOG>..."),
     ] {
         let arguments =

@@ -55,6 +55,8 @@ struct Summed {
     a: Vec<f64>,
     b: Vec<f64>,
     block: usize,
+    /// Blocks that tell something on their own: one, where the autocorrelation does not die away within the recording.
+    n_blocks: usize,
 }
 
 impl Summed {
@@ -68,15 +70,13 @@ impl Summed {
                 }))
                 .collect()
         };
-        Self { a: sums(&errors.a_n), b: sums(&errors.b_n), block: block_length(errors) }
+        let (block, died_away) = block_length(errors);
+        let n_blocks = if died_away { errors.a_n.len() / block.max(1) } else { 1 };
+        Self { a: sums(&errors.a_n), b: sums(&errors.b_n), block, n_blocks }
     }
 
     fn n(&self) -> usize {
         self.a.len() - 1
-    }
-
-    fn n_blocks(&self) -> usize {
-        if self.block == 0 { 0 } else { self.n() / self.block }
     }
 
     /// Sums over a resample.
@@ -98,12 +98,13 @@ impl Summed {
     }
 }
 
-/// Samples of a block: twice the lag at which the difference of squared errors is no longer like itself.
-fn block_length(errors: &Errors) -> usize {
+/// Samples of a block, twice the lag at which the difference of squared errors is no longer like itself; and whether there is
+/// such a lag.
+fn block_length(errors: &Errors) -> (usize, bool) {
     let differences: Vec<f64> = errors.a_n.iter().zip(&errors.b_n).map(|(a, b)| b * b - a * a).collect();
     let n = differences.len();
     if n < 2 * FEWEST_OF_ONE {
-        return n;
+        return (n, false);
     }
     let mean = differences.iter().sum::<f64>() / n as f64;
     let variance = differences.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n as f64;
@@ -121,7 +122,7 @@ fn block_length(errors: &Errors) -> usize {
         }
         lag = (lag + 1).max((LAG_RATIO * lag as f64) as usize);
     }
-    (2 * died).min(longest).max(1)
+    ((2 * died).min(longest).max(1), variance == 0.0 || (quiet == IN_A_ROW && 2 * died <= longest))
 }
 
 /// Compares two models over the samples of all `recordings`.
@@ -134,7 +135,7 @@ pub fn difference(recordings: &[Errors], resampling: Resampling) -> Difference {
     let [a, b] = total(&mut summed.iter().map(Summed::sums)).map(|sum| sum / n);
     let [rmse_a_n, rmse_b_n] = [a, b].map(f64::sqrt);
     let difference_n = rmse_b_n - rmse_a_n;
-    let n_blocks: usize = summed.iter().map(Summed::n_blocks).sum();
+    let n_blocks: usize = summed.iter().map(|summed| summed.n_blocks).sum();
     let lengths = recordings.iter().filter(|errors| !errors.a_n.is_empty()).zip(&summed);
     let block_s = lengths.map(|(errors, summed)| errors.period_s * summed.block as f64).fold(0.0, f64::max);
     let untold =
