@@ -10,9 +10,9 @@ BIN = $(eval BIN := $(shell $(CARGO) metadata --no-deps --offline --format-versi
 # Where `make install` puts programs, manual pages and completions.
 PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
-PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench pam-export pam-fleet
+PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench pam-export pam-fleet pam-compare
 
-.PHONY: all install test check bench compare tables tutorial hard-use odd-inputs mutate fuzz datasets recordings prove prove-worlds prove-real fleet-slurm clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial tutorial-muscle first-hour hard-use odd-inputs mutate fuzz datasets recordings prove prove-worlds prove-real fleet-slurm clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -71,6 +71,17 @@ tables: cargo-is-there
 tutorial: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/run-tutorial --bin $(BIN)
+
+# The same for datasets/TUTORIAL-MUSCLE.md, on a real muscle whose recordings are fetched (make recordings, or
+# PAM_RECORDINGS=folder); without them it says that it was skipped.
+tutorial-muscle: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/run-tutorial --bin $(BIN) --muscle
+
+# Twelve tasks of a beginner, from a German LabVIEW log to a C header, by what --help shows in its examples.
+first-hour: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/first-hour --bin $(BIN)
 
 # Kills, full disks, closed pipes, two writers, foreign names.
 hard-use: cargo-is-there

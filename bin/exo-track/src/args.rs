@@ -42,7 +42,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "TRACK.csv", required_unless_present_any = ["check", "example"])]
     pub(crate) out: Option<PathBuf>,
 
-    /// Errors of the lift to write (exo-metrics/1).
+    /// Tracking errors of the lift to write (exo-metrics/1).
     #[arg(long, value_name = "METRICS.json")]
     pub(crate) metrics: Option<PathBuf>,
 

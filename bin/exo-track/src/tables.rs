@@ -14,8 +14,8 @@ pub(crate) fn errors(left: &TrackingErrors, right: &TrackingErrors, paper: Optio
     let mut table = Table::new(["", "", "MAX", "MAE", "RMSE", "ITAE", "Σ t |e|"]);
     let signals: [(&str, Pick); 3] = [
         ("angle (rad)", |errors| errors.angle_rad),
-        ("angular velocity (rad/s)", |errors| errors.velocity_rad_per_s),
-        ("angular acceleration (rad/s²)", |errors| errors.acceleration_rad_per_s2),
+        ("velocity (rad/s)", |errors| errors.velocity_rad_per_s),
+        ("acceleration (rad/s²)", |errors| errors.acceleration_rad_per_s2),
     ];
     for (name, signal) in signals {
         let mut name = name;
@@ -29,10 +29,10 @@ pub(crate) fn errors(left: &TrackingErrors, right: &TrackingErrors, paper: Optio
         }
     }
     let heading = if paper.is_some() {
-        "Errors of the lift beside the paper's Table 2 (ITAE is the integral of t |e| dt, times s² to the signal's unit; \
+        "Tracking errors beside the paper's Table 2 (ITAE is the integral of t |e| dt, times s² to the signal's unit; \
          the paper prints the plain sum of t |e| over its samples as ITAE, which is 1/dt = 100 times as much)"
     } else {
-        "Errors of the lift (ITAE is the integral of t |e| dt, times s² to the signal's unit)"
+        "Tracking errors (ITAE is the integral of t |e| dt, times s² to the signal's unit)"
     };
     format!("{}\n{}", wrapped(heading, ""), table.to_terminal())
 }

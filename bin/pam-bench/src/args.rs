@@ -14,7 +14,7 @@ use pam_virtual_bench::Concealed;
 #[derive(Debug, Parser)]
 #[command(
     version,
-    after_help = "Example: forty seconds of isometric ramps, and the truth behind them\n  \
+    after_help = "Example: forty seconds of isometric ramps, and the truth about them\n  \
                   pam-bench --muscle configs/muscle-nominal.toml --protocol isometric-ramps --duration-scale 0.1 \
                   --out ramps.csv --truth ramps.json\n\n\
                   Example: a muscle at random, with two effects that the log does not tell\n  \
@@ -70,7 +70,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N")]
     pub(crate) effect_seed: Option<u64>,
 
-    /// Add a smooth error of the form, which has no name, of so many newtons root mean square over all pressures
+    /// Add a smooth error of form that no effect of the catalogue has, of so many newtons root mean square over all pressures
     /// and contractions of the protocols.
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = pam_cli::number, allow_negative_numbers = true)]
     pub(crate) smooth_misfit_n: f64,

@@ -12,19 +12,21 @@ use pam_diagnosis::diagnose::MAX_EFFECTS;
 ///
 /// Compares the model as it is with the recordings, refits the base model to them, looks where and how the residual exceeds the noise, weighs every effect of
 /// the catalogue on blocks of recording that it was not fitted to, and names what explains the mismatch; or says that
-/// nothing is missing, or that something is that has no name. The diagnosed model works wherever the model did.
+/// nothing is missing, or that unmodelled structure is left. The diagnosed model works wherever the model did.
 #[derive(Debug, Parser)]
 #[command(
     version,
     after_help = "Example: diagnose two recordings, judge on a third, read the report\n  \
                   pam-diagnose run1.csv run2.csv --model model.json --holdout run3.csv --out diagnosis.json --out-model \
                   augmented.json --report report.html\n\n\
+                  Example: logs whose columns, units and calibration are in the file of their bench\n  \
+                  pam-diagnose log1.lvm log2.lvm --channels bench.toml --model model.json --out diagnosis.json\n\n\
                   Example: what could these recordings show, and what to record next\n  \
                   pam-diagnose run1.csv --model model.json --isolability --next-experiment setpoints.csv\n\n\
                   Example: what an effect is and what it looks like\n  \
                   pam-diagnose --explain stribeck --figure stribeck.svg\n\n\
-                  Exit codes: 0 done and understood (consistent, explained, ambiguous); 1 done, and part of the mismatch \
-                  has no name (unexplained, explained in part), or the model as given misses the recordings, or the \
+                  Exit codes: 0 done and understood (consistent, explained, ambiguous); 1 done, and unmodelled structure is \
+                  left (unexplained, explained in part), or the model as given misses the recordings, or the \
                   diagnosed one what was held out; 2 input or usage, another muscle included."
 )]
 pub(crate) struct Args {

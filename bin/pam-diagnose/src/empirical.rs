@@ -5,41 +5,49 @@ use pam_core::artifact::diagnosis::{Empirical, EmpiricalTerm};
 use pam_core::effects::Sentence;
 use pam_core::effects::sentence::{Curve, Driver, Recall};
 use pam_report::number::{engineering, engineering_with_stderr, significant};
-use pam_report::{PageEmpirical, PageTerm, Table};
+use pam_report::text::hanging;
+use pam_report::{PageEmpirical, PageTerm};
 
 /// Terms, what they gain and how sure they are; none where nothing was found.
 pub(crate) fn table(artifact: &DiagnosisArtifact) -> Option<String> {
     let empirical = artifact.empirical.as_ref()?;
-    let mut table = Table::new(["empirical term", "parameter", "value", "held-out blocks N", "bootstrap"]);
+    let mut text = "Unmodelled structure, as empirical terms\n".to_owned();
+    let mut say = |words: &str| text.push_str(&format!("{}\n", hanging(words, " ", "   ")));
     for term in &empirical.terms {
-        let evidence = &term.evidence;
-        let mut once = [
-            format!("{} → {}", significant(evidence.rmse_without_n, 3), significant(evidence.rmse_with_n, 3)),
-            format!("{:.0} %", 100.0 * term.stability.chosen),
-        ];
-        let mut equation = term.equation.clone();
+        let (evidence, stability) = (&term.evidence, &term.stability);
+        say(&term.equation);
         for (name, value) in rows(term) {
-            let [gain, chosen] = std::mem::take(&mut once);
-            table.row([std::mem::take(&mut equation), name, value, gain, chosen]);
+            say(&format!("  {name} = {value}"));
         }
-        for other in term.stability.others.iter().take(2) {
-            let share = format!("{:.0} %", 100.0 * other.chosen);
-            table.row(["  or".to_owned(), other.words.clone(), String::new(), String::new(), share]);
-        }
-        for near in &term.nearest {
-            let left = format!("→ {}", significant(near.rmse_with_n, 3));
-            table.row([format!("  not {}", near.id), String::new(), String::new(), left]);
+        say(&format!(
+            "Cross-validated RMSE {} → {} N; selected in {:.0} % of bootstrap resamples{}.",
+            significant(evidence.rmse_without_n, 3),
+            significant(evidence.rmse_with_n, 3),
+            100.0 * stability.chosen,
+            stability
+                .others
+                .iter()
+                .take(2)
+                .map(|other| format!(", instead of it in {:.0} %: {}", 100.0 * other.chosen, other.words))
+                .collect::<String>()
+        ));
+        let nearest: Vec<String> = term
+            .nearest
+            .iter()
+            .map(|near| format!("{} (leaves {} N)", near.id, significant(near.rmse_with_n, 3)))
+            .collect();
+        if !nearest.is_empty() {
+            say(&format!("Nearest effects, none of which it is: {}.", nearest.join(", ")));
         }
     }
-    let gain = |name: &str, gain: pam_core::artifact::diagnosis::EmpiricalGain| {
-        format!(
-            "{name}: {} N without, {} N with\n",
-            significant(gain.rmse_without_n, 3),
-            significant(gain.rmse_with_n, 3)
-        )
-    };
-    let holdout = empirical.holdout.map_or(String::new(), |holdout| gain("Held-out recordings, all samples", holdout));
-    Some(format!("What models the rest\n{}{holdout}", table.to_terminal()))
+    if let Some(holdout) = empirical.holdout {
+        say(&format!(
+            "Held-out recordings, all samples: {} N without, {} N with.",
+            significant(holdout.rmse_without_n, 3),
+            significant(holdout.rmse_with_n, 3)
+        ));
+    }
+    Some(text)
 }
 
 /// Numbers of a term, and of its curve where it has few.

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
             held_out.display()
         );
     }
-    let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.model);
+    let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.model).chain(&args.read.channels);
     let open = |path: &Option<PathBuf>| -> anyhow::Result<Option<Output>> {
         let path = path.as_deref().filter(|_| !args.run.check);
         path.map(|path| Ok(Output::open(path)?.apart_from(inputs())?)).transpose()
@@ -57,10 +57,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     let to_stdout = outputs.paths().any(|path| path.as_os_str() == "-");
 
     let (model, model_sha256) = ModelArtifact::read(model_path)?;
-    let estimation = read_recordings(&args.logs, &args.read.options(), &console)?;
-    let holdout = read_recordings(&args.holdout, &args.read.options(), &console)?;
+    let read = args.read.resolve()?;
+    let estimation = read_recordings(&args.logs, &read.options, &console)?;
+    let holdout = read_recordings(&args.holdout, &read.options, &console)?;
     let mut hashes =
         vec![Input { path: model_path.display().to_string(), sha256: model_sha256, role: InputRole::Model }];
+    hashes.extend(read.channels);
     hashes.extend(estimation.iter().map(|recording| Input::recording(recording, InputRole::Estimation)));
     hashes.extend(holdout.iter().map(|recording| Input::recording(recording, InputRole::Validation)));
     let request =

@@ -168,7 +168,7 @@ pub(crate) fn isolability(artifact: &DiagnosisArtifact) -> String {
     let compared =
         |index: &usize| found.cosine[*index].iter().enumerate().any(|(at, &cosine)| at != *index && cosine > 0.0);
     let (shown, hidden): (Vec<usize>, Vec<usize>) = (0..found.ids.len()).partition(compared);
-    let mut table = Table::new(["effect", "leaves N", "looks most like", "cosine"]);
+    let mut table = Table::new(["effect", "leaves N", "most similar", "cosine"]);
     for &row in &shown {
         let mut others: Vec<usize> = shown.iter().copied().filter(|other| *other != row).collect();
         others.sort_by(|&a, &b| found.cosine[row][b].abs().total_cmp(&found.cosine[row][a].abs()));

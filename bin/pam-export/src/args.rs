@@ -16,7 +16,8 @@ use pam_cli::{ReadArgs, RunArgs};
                   pam-export --model model.json --inverse inverse.json --c muscle.h\n  \
                   cc -std=c99 -O2 -o check muscle_check.c -lm && ./check\n\
                   Everything that pam-predict computes along a recording, and the header against it\n  \
-                  pam-export run3.csv --model model.json --vectors vectors.csv && ./check vectors.csv\n\
+                  pam-export run3.csv --model model.json --vectors vectors.csv && ./check vectors.csv\n  \
+                  pam-export log.lvm --channels bench.toml --model model.json --vectors vectors.csv\n\
                   A Python module that reads model.json and inverse.json, tables for Simulink, a scene for MuJoCo\n  \
                   pam-export --model model.json --python pam_muscle.py --simulink muscle.m --mujoco muscle.xml\n\n\
                   Exit codes: 0 done; 2 input or usage."

@@ -79,7 +79,7 @@ struct Export {
 impl Export {
     /// Test vectors along a recording, as `pam-predict` sees it.
     fn along(&self, args: &Args, log: &Path, console: &Console) -> anyhow::Result<Vec<Vector>> {
-        let options = ReadOptions { force_required: false, ..args.read.options() };
+        let options = ReadOptions { force_required: false, ..args.read.resolve()?.options };
         let recording = pam_cli::read_recording(log, &options, console)?;
         for note in recording.repairs.notes() {
             console.warn(format!("{}: {note}", recording.path));
@@ -118,7 +118,11 @@ impl Outputs {
             args.run.check || asked.iter().any(|path| path.is_some()),
             "nothing to write: name --c, --python, --simulink, --mujoco or --vectors"
         );
-        let inputs = || [Some(&args.model), args.inverse.as_ref(), args.log.as_ref()].into_iter().flatten();
+        let inputs = || {
+            [Some(&args.model), args.inverse.as_ref(), args.log.as_ref(), args.read.channels.as_ref()]
+                .into_iter()
+                .flatten()
+        };
         let open = |path: Option<&Path>| -> anyhow::Result<Option<(Output, PathBuf)>> {
             match path.filter(|_| !args.run.check) {
                 Some(path) => Ok(Some((Output::open(path)?.apart_from(inputs())?, path.to_owned()))),

@@ -54,7 +54,7 @@ pub(crate) fn page(survey: &Survey, folder: Option<&str>) -> FleetPage {
 fn common(make: &str, what: &str, n: usize) -> String {
     let of_make = if make.is_empty() { String::new() } else { format!(" of {make}") };
     match what {
-        "unexplained" => format!("part of the mismatch has no name in {n} campaigns{of_make}"),
+        "unexplained" => format!("unmodelled structure is left in {n} campaigns{of_make}"),
         "explained-in-part" => format!("named effects explain part of the mismatch in {n} campaigns{of_make}"),
         _ => format!("missing physics: {what}, in {n} campaigns{of_make}"),
     }

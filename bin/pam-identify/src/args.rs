@@ -20,8 +20,11 @@ use pam_core::spelling::number;
     after_help = "Example: fit two recordings, judge the model on a third\n  \
                   pam-identify run1.csv run2.csv --muscle muscle.toml --holdout run3.csv --out model.json --figure \
                   fit.svg\n\n\
-                  Example: a commented muscle file to fill in\n  \
-                  pam-identify --example --out muscle.toml\n\n\
+                  Example: a commented muscle file to fill in, and a file of channels: columns, units, calibration\n  \
+                  pam-identify --example --out muscle.toml\n  \
+                  pam-identify --example=channels --out bench.toml\n\n\
+                  Example: what is in this log, before anything is fitted?\n  \
+                  pam-identify log.lvm --muscle muscle.toml --channels bench.toml --check\n\n\
                   Exit codes: 0 done and accepted; 1 done and rejected (did not converge, above --max-rmse-n, or \
                   parameters that no muscle has, unless with --accept-implausible); 2 input or usage."
 )]
@@ -111,7 +114,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     pub(crate) particles: u32,
 
-    /// Most moves of each particle; a swarm stops before once it no longer gains, unless with --no-polish.
+    /// Maximum iterations of a swarm; it stops earlier once it no longer gains, unless with --no-polish.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) iterations: u32,
 
@@ -124,9 +127,17 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) accept_implausible: bool,
 
-    /// Write a commented muscle file to --out, or else to standard output, and stop.
-    #[arg(long, conflicts_with_all = ["logs", "muscle", "holdout", "figure"])]
-    pub(crate) example: bool,
+    /// Write a commented file to fill in to --out, or else to standard output, and stop: a muscle file, or with
+    /// --example=channels a file for --channels.
+    #[arg(
+        long,
+        value_name = "OF",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "muscle",
+        conflicts_with_all = ["logs", "muscle", "holdout", "figure"]
+    )]
+    pub(crate) example: Option<Example>,
 
     #[command(flatten)]
     pub(crate) read: ReadArgs,
@@ -158,6 +169,15 @@ impl Args {
         }
         Ok(())
     }
+}
+
+/// Which commented file to write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Example {
+    /// Dimensions of a muscle.
+    Muscle,
+    /// What the columns of recordings mean.
+    Channels,
 }
 
 /// How eq. 11 is written.

@@ -15,16 +15,21 @@ use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
 use pam_report::PictureFormat;
 
-use crate::args::{Args, BladderArg, FormArg, FrictionArg};
+use crate::args::{Args, BladderArg, Example, FormArg, FrictionArg};
 use crate::{figure, tables};
 
 /// What `--example` writes.
-const EXAMPLE: &str = include_str!("../../../configs/muscle-nominal.toml");
+const MUSCLE: &str = include_str!("../../../configs/muscle-nominal.toml");
+const CHANNELS: &str = include_str!("../../../configs/bench.toml");
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let console = args.run.start()?;
-    if args.example {
-        write_example(EXAMPLE, args.out.as_deref(), &args.run, &console)?;
+    if let Some(example) = args.example {
+        let text = match example {
+            Example::Muscle => MUSCLE,
+            Example::Channels => CHANNELS,
+        };
+        write_example(text, args.out.as_deref(), &args.run, &console)?;
         return Ok(Verdict::Accepted);
     }
     let muscle_path = args.muscle.as_deref().context("--muscle is missing")?;
@@ -51,17 +56,19 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
             held_out.display()
         );
     }
-    let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.muscle);
+    let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.muscle).chain(&args.read.channels);
     let open = |path: &Path| Output::open(path)?.apart_from(inputs());
     let out = args.out.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
     let open_figure = |path: &Path| Output::open_figure(path)?.apart_from(inputs());
     let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open_figure).transpose()?;
 
     let (muscle, muscle_input) = read_muscle(muscle_path)?;
-    let estimation = read_recordings(&args.logs, &args.read.options(), &console)?;
-    let validation = read_recordings(&args.holdout, &args.read.options(), &console)?;
+    let read = args.read.resolve()?;
+    let estimation = read_recordings(&args.logs, &read.options, &console)?;
+    let validation = read_recordings(&args.holdout, &read.options, &console)?;
     twice::check(&estimation, &validation)?;
     let mut hashes = vec![muscle_input];
+    hashes.extend(read.channels);
     hashes.extend(estimation.iter().map(|recording| Input::recording(recording, InputRole::Estimation)));
     hashes.extend(validation.iter().map(|recording| Input::recording(recording, InputRole::Validation)));
 

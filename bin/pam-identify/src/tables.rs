@@ -6,7 +6,7 @@ use pam_core::quality::{ChannelQuality, RecordingQuality};
 use pam_identification::prepare::Gated;
 use pam_report::Table;
 use pam_report::number::{engineering, significant, with_stderr};
-use pam_report::text::{shortened, wrapped};
+use pam_report::text::{told_apart, wrapped};
 
 /// The quality gate: a row per channel of a single recording; of several, a row each with what is odd.
 pub(crate) fn gate(gates: &[Gated]) -> String {
@@ -47,14 +47,15 @@ const NAME: usize = 22;
 /// Many recordings, a row each: noise of the channels, and what is odd.
 fn overview(gates: &[Gated]) -> Table {
     let mut table = Table::new(["recording", "rows", "Hz", "noise of p", "of L", "of F", "odd"]);
-    for Gated { quality, .. } in gates {
+    let names: Vec<&str> = gates.iter().map(|gated| short_name(&gated.quality.path)).collect();
+    for (Gated { quality, .. }, name) in gates.iter().zip(told_apart(&names, NAME)) {
         let noise = |name: &str| {
             let channel = quality.channel(name);
             channel.map_or("-".to_owned(), |channel| engineering(channel.noise, &channel.unit, 2))
         };
         let mut odd = odd(quality).into_iter();
         table.row([
-            shortened(&short_name(&quality.path), NAME),
+            name,
             quality.n_rows.to_string(),
             significant(1.0 / quality.period_s.max(1e-12), 3),
             noise("pressure"),
@@ -102,8 +103,8 @@ fn gaps(quality: &RecordingQuality) -> Option<String> {
 }
 
 /// File name without its folders, which repeat on every row.
-fn short_name(path: &str) -> String {
-    path.rsplit('/').next().unwrap_or(path).to_owned()
+fn short_name(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
 }
 
 fn range(channel: &ChannelQuality) -> String {
@@ -199,13 +200,15 @@ pub(crate) fn agreement(artifact: &ModelArtifact) -> String {
             significant(statistics.rmse_n, 4),
             significant(statistics.rmse_all_n, 4),
             significant(statistics.max_n, 3),
-            format!("{:.5}", statistics.r2),
-            format!("{:.2}", statistics.fit_percent),
+            share(statistics.r2, 5),
+            share(statistics.fit_percent, 2),
             counted(statistics),
         ]);
     };
-    for recording in &artifact.fit.recordings {
-        row(shortened(&short_name(&recording.path), NAME), &recording.statistics);
+    let recordings = &artifact.fit.recordings;
+    let names: Vec<&str> = recordings.iter().map(|recording| short_name(&recording.path)).collect();
+    for (recording, name) in recordings.iter().zip(told_apart(&names, NAME)) {
+        row(name, &recording.statistics);
     }
     row("estimation, all".to_owned(), &artifact.fit.estimation);
     if let Some(validation) = &artifact.fit.validation {
@@ -218,6 +221,11 @@ pub(crate) fn agreement(artifact: &ModelArtifact) -> String {
         significant(artifact.fit.effective_samples, 3)
     );
     format!("{}\n{}", wrapped(&heading, ""), table.to_terminal())
+}
+
+/// With so many decimals, or three digits where the model is worse than the mean of the force.
+fn share(value: f64, decimals: usize) -> String {
+    if value < 0.0 { significant(value, 3) } else { format!("{value:.decimals$}") }
 }
 
 /// Share of samples that count.

@@ -740,3 +740,62 @@ fn the_same_recording_twice_is_known_by_its_samples() {
         );
     }
 }
+
+/// The good recording without a header, in volts as the example of a channels file has it.
+fn in_volts() -> String {
+    shipped("isobaric-triangles.csv")
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let mut fields = line.split(',').map(|field| field.parse::<f64>().unwrap());
+            let [t, p, l, f] = [(); 4].map(|()| fields.next().unwrap());
+            format!("{t},{},{l},{}\n", (p + 125.0) / 250.0, f / 100.0)
+        })
+        .collect()
+}
+
+#[test]
+fn the_example_of_a_channels_file_reads_volts_without_a_header() {
+    let bench = Bench::new();
+    assert_eq!(bench.run("--example=channels --out bench.toml").status.code(), Some(0));
+    bench.file("volts.csv", in_volts());
+    let output = bench.run("volts.csv --muscle m.toml --channels bench.toml --out model.json --quiet --starts 1");
+    let model: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(bench.folder.path().join("model.json")).unwrap()).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let roles: Vec<&str> =
+        model["inputs"].as_array().unwrap().iter().map(|input| input["role"].as_str().unwrap()).collect();
+    assert_eq!(roles, ["muscle", "configuration", "estimation"]);
+    // Beyond the range of the load cell no sample counts.
+    let counted = |model: &serde_json::Value| model["fit"]["estimation"]["n_samples"].as_u64().unwrap();
+    let within = counted(&model);
+    let text = std::fs::read_to_string(bench.folder.path().join("bench.toml")).unwrap();
+    bench.file("narrow.toml", text.replace("[-500.0, 500.0]", "[-500.0, 300.0]"));
+    bench.run("volts.csv --muscle m.toml --channels narrow.toml --out narrow.json --quiet --starts 1");
+    let narrow = std::fs::read_to_string(bench.folder.path().join("narrow.json")).unwrap();
+    assert!(counted(&serde_json::from_str(&narrow).unwrap()) < within);
+}
+
+#[test]
+fn a_channels_file_that_is_wrong_gets_one_line_with_its_place() {
+    let bench = Bench::new();
+    bench.file("bench.toml", "[pressure]\ncolumn = \"ai0\"\nunit = \"atm\"\n");
+    assert_eq!(
+        bench.refusal(&format!("good.csv --channels bench.toml {TAIL}")),
+        "error: bench.toml:1:1: [pressure] has the unit \"atm\", which is not known; write kPa, Pa, MPa, bar or psi, and gain and \
+         offset for any other"
+    );
+    bench.file("bench.toml", "[pressure]\ncolumn = \"ai0\"\nunit = \"bar\"\n");
+    assert_eq!(
+        bench.refusal(&format!("good.csv --channels bench.toml {TAIL}")),
+        "error: good.csv: bench.toml [pressure] names column \"ai0\", which the file lacks; it has time_s, pressure_kPa, \
+         length_mm, force_N"
+    );
+    // What the command line says wins.
+    let output = bench.run("good.csv --channels bench.toml --map pressure_kPa=pressure_kPa --muscle m.toml --check");
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(
+        bench.refusal(&format!("good.csv --channels gone.toml {TAIL}")),
+        "error: cannot read channels file gone.toml: no such file; check the path"
+    );
+}

@@ -17,6 +17,8 @@ use pam_cli::{ReadArgs, RunArgs};
                   pam-predict run3.csv --model model.json --out predicted.csv --max-rmse-n 2\n\n\
                   Example: see it, and hand the figures on\n  \
                   pam-predict run3.csv --model model.json --figure predicted.svg --metrics metrics.json\n\n\
+                  Example: a log whose columns, units and calibration are in the file of its bench\n  \
+                  pam-predict log.lvm --channels bench.toml --model model.json --out predicted.csv\n\n\
                   Exit codes: 0 done and accepted; 1 done and rejected (above --max-rmse-n or --max-rmse-all-n); 2 input \
                   or usage."
 )]

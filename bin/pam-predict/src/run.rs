@@ -21,15 +21,16 @@ use crate::{figure, metrics};
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let console = args.run.start()?;
-    let inputs = [&args.log, &args.model];
+    let inputs = || [&args.log, &args.model].into_iter().chain(&args.read.channels);
     let wanted = |path: &Option<PathBuf>, open: fn(&Path) -> Result<Output, OutputError>| {
-        path.as_deref().filter(|_| !args.run.check).map(|path| open(path)?.apart_from(inputs)).transpose()
+        path.as_deref().filter(|_| !args.run.check).map(|path| open(path)?.apart_from(inputs())).transpose()
     };
     let out = wanted(&args.out, |path| Output::open(path))?;
     let metrics_out = wanted(&args.metrics, |path| Output::open(path))?;
     let figure_out = wanted(&args.figure, |path| Output::open_figure(path))?;
     let (artifact, model_sha256) = ModelArtifact::read(&args.model)?;
-    let options = ReadOptions { force_required: false, ..args.read.options() };
+    let read = args.read.resolve()?;
+    let options = ReadOptions { force_required: false, ..read.options };
     let recording = pam_cli::read_recording(&args.log, &options, &console)?;
     for note in recording.repairs.notes() {
         console.warn(format!("{}: {note}", recording.path));
@@ -88,10 +89,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let above = above(args, statistics.as_ref());
     if let Some(followed) = &followed {
         if let Some(output) = metrics_out {
-            let read = Input { path: args.model.display().to_string(), sha256: model_sha256, role: InputRole::Model };
+            let model_input =
+                Input { path: args.model.display().to_string(), sha256: model_sha256, role: InputRole::Model };
             let floor_n =
                 has_force.then(|| noise_floor_n(std::slice::from_ref(&prepared), model.base())).transpose()?;
-            let metrics = metrics::metrics(args, vec![read, input], followed, (floor_n, above.is_empty()), &prepared);
+            let inputs = [Some(model_input), read.channels.clone(), Some(input)].into_iter().flatten().collect();
+            let metrics = metrics::metrics(args, inputs, followed, (floor_n, above.is_empty()), &prepared);
             outputs.push((output, readable_json(&metrics)?));
         }
         if let Some(output) = figure_out {

@@ -16,6 +16,8 @@ use pam_inverse_model::train::defaults;
     version,
     after_help = "Example: train, look at the errors, keep the weights\n  \
                   pam-train-inverse --model model.json --out inverse.json --figure inverse.svg\n\n\
+                  Example: train at the pressures and lengths of a log as well\n  \
+                  pam-train-inverse log.lvm --channels bench.toml --model model.json --out inverse.json\n\n\
                   Exit codes: 0 done and accepted; 1 done and rejected (above --max-error-percent); 2 input or usage."
 )]
 pub(crate) struct Args {

@@ -38,7 +38,7 @@ pub(crate) fn svg(artifact: &InverseArtifact, outcome: &Outcome, prepared: &Prep
                 significant(errors.force_n.rmse, 2),
                 significant(errors.force_rmse_percent, 2)
             ),
-            format!("the inverse exists in {:.1} % of the box", errors.coverage.invertible_percent),
+            format!("the inverse exists in {:.1} % of the operating range", errors.coverage.invertible_percent),
         ],
         maps: [1.0, -1.0].map(|direction| inverse_map(outcome, prepared.exact(), direction)),
         slopes: slope_map(prepared.exact()),

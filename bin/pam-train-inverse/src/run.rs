@@ -18,7 +18,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     check_numbers(args)?;
     let from_stdin = args.logs.iter().filter(|path| path.as_os_str() == "-").count();
     ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
-    let inputs = || args.logs.iter().chain([&args.model]);
+    let inputs = || args.logs.iter().chain([&args.model]).chain(&args.read.channels);
     let open = |path: &Path| Output::open(path)?.apart_from(inputs());
     let out = args.out.as_deref().filter(|_| !args.run.check).map(open).transpose()?;
     let open_figure = |path: &Path| Output::open_figure(path)?.apart_from(inputs());
@@ -30,8 +30,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         console.note(format!("left out, as they are not the muscle's: {}", beside.join(", ")));
     }
     let mut hashes = vec![Input { path: args.model.display().to_string(), sha256, role: InputRole::Model }];
-    let recordings =
-        read_recordings(&args.logs, &ReadOptions { force_required: false, ..args.read.options() }, &console)?;
+    let read = args.read.resolve()?;
+    hashes.extend(read.channels);
+    let recordings = read_recordings(&args.logs, &ReadOptions { force_required: false, ..read.options }, &console)?;
     hashes.extend(recordings.iter().map(|recording| Input::recording(recording, InputRole::Training)));
     let config = args.config();
     let seed = args.run.seed;

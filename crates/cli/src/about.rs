@@ -4,7 +4,12 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use schemars::JsonSchema;
 
+use pam_core::recording::ChannelsFile;
+
 use crate::message::Message;
+
+/// Option, and kind of schema, of the file that says what columns mean.
+const CHANNELS: &str = "channels";
 
 /// Gives the text of a JSON schema.
 pub(crate) type Schema = fn() -> String;
@@ -16,11 +21,19 @@ pub(crate) fn schema<T: JsonSchema>() -> String {
 
 /// `command` with the options below; `has_artifact` where the program writes an artifact that has a schema.
 pub(crate) fn with_options(command: Command, has_artifact: bool) -> Command {
-    let of: &[&str] = if has_artifact { &["artifact", "messages"] } else { &["messages"] };
-    let help = if has_artifact {
-        "Print the JSON schema of the artifact, or of the lines that --format json writes, and stop"
-    } else {
-        "Print the JSON schema of the lines that --format json writes, and stop"
+    let reads = command.get_arguments().any(|argument| argument.get_id() == CHANNELS);
+    let kinds = [("artifact", has_artifact), ("messages", true), (CHANNELS, reads)];
+    let of: Vec<&str> = kinds.into_iter().filter(|(_, known)| *known).map(|(kind, _)| kind).collect();
+    let help = match (has_artifact, reads) {
+        (true, true) => {
+            "Print the JSON schema of the artifact, of the lines that --format json writes, or of the file of --channels, \
+             and stop"
+        }
+        (true, false) => "Print the JSON schema of the artifact, or of the lines that --format json writes, and stop",
+        (false, true) => {
+            "Print the JSON schema of the lines that --format json writes, or of the file of --channels, and stop"
+        }
+        (false, false) => "Print the JSON schema of the lines that --format json writes, and stop",
     };
     let schema = Arg::new("schema")
         .long("schema")
@@ -54,7 +67,11 @@ pub(crate) fn asked_for(
     artifact: Option<Schema>,
 ) -> Option<Vec<u8>> {
     if let Some(of) = matches.get_one::<String>("schema") {
-        let schema = artifact.filter(|_| of == "artifact").unwrap_or(schema::<Message>);
+        let schema = match of.as_str() {
+            CHANNELS => schema::<ChannelsFile>,
+            "artifact" => artifact.unwrap_or(schema::<Message>),
+            _ => schema::<Message>,
+        };
         return Some(schema().into_bytes());
     }
     if let Some(shell) = matches.get_one::<clap_complete::Shell>("completions") {

@@ -51,6 +51,6 @@ pub use output::{Output, commit_all, finish_all, pretty_json, publish, write_fil
 pub use output_error::OutputError;
 pub use pam_core::spelling::nearest;
 pub use program::{main, main_with_schema};
-pub use read_args::ReadArgs;
+pub use read_args::{ReadArgs, ReadAs};
 pub use reading::{read_recording, read_recordings};
 pub use run_args::{RunArgs, number, positive};

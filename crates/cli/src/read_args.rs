@@ -1,12 +1,19 @@
 //! Options that every program reading recordings takes.
 
-use pam_core::recording::{Calibration, ColumnMap, Columns, FixedChannel, ReadOptions};
+use std::path::PathBuf;
+
+use pam_core::artifact::{Input, InputRole};
+use pam_core::recording::{Calibration, Channels, ChannelsError, ColumnMap, Columns, FixedChannel, ReadOptions};
 
 const HEADING: &str = "Reading recordings";
 
 /// How to read recordings; flatten it into the program's own arguments.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ReadArgs {
+    /// Columns, units, calibration and sensors of this bench, once for all programs (pam-channels/1); the options below win
+    /// over it.
+    #[arg(long, help_heading = HEADING, value_name = "BENCH.toml")]
+    pub channels: Option<PathBuf>,
     /// Names of the columns of a file without a header, - to skip one: force_N,pressure_kPa,time_s,-
     #[arg(long, help_heading = HEADING, value_name = "NAMES", allow_hyphen_values = true)]
     pub columns: Option<Columns>,
@@ -24,17 +31,34 @@ pub struct ReadArgs {
     pub skip_bad_rows: bool,
 }
 
+/// How to read recordings, and what says so.
+#[derive(Debug, Clone, Default)]
+pub struct ReadAs {
+    /// What to read with; what neither option nor file speaks of is as by default.
+    pub options: ReadOptions,
+    /// The file that says what columns mean, where there is one.
+    pub channels: Option<Input>,
+}
+
 impl ReadArgs {
-    /// What to read with; what no option speaks of is as by default.
-    pub fn options(&self) -> ReadOptions {
-        ReadOptions {
+    /// The options with what the file of `--channels` adds to them.
+    ///
+    /// # Errors
+    /// [`ChannelsError`] where that file cannot be used.
+    pub fn resolve(&self) -> Result<ReadAs, ChannelsError> {
+        let mut options = ReadOptions {
             columns: self.columns.clone(),
             map: self.map.clone(),
             fixed: self.fixed.clone(),
             calibrate: self.calibrate.clone(),
             skip_bad_rows: self.skip_bad_rows,
             ..ReadOptions::default()
-        }
+        };
+        let Some(path) = &self.channels else { return Ok(ReadAs { options, channels: None }) };
+        let file = Channels::read(path)?;
+        file.complete(&mut options);
+        let input = Input { path: path.display().to_string(), sha256: file.sha256, role: InputRole::Configuration };
+        Ok(ReadAs { options, channels: Some(input) })
     }
 }
 
@@ -70,7 +94,7 @@ mod tests {
         ];
         let args = Args::try_parse_from(args).unwrap();
         assert_eq!(args.logs, ["a.csv", "b.csv"]);
-        let options = args.read.options();
+        let options = args.read.resolve().unwrap().options;
         assert_eq!(options.columns.unwrap().names.len(), 3);
         assert_eq!((options.map.len(), options.fixed.len(), options.calibrate.len()), (1, 2, 1));
         assert!(options.skip_bad_rows && options.force_required);

@@ -66,12 +66,17 @@ pub(crate) fn suggesting(message: &str) -> String {
     suggestion().unwrap_or_else(|| message.to_owned())
 }
 
-/// Why a text is no TOML of the kind that was expected: line and column, both counted from 1, and the reason.
-pub fn toml_fault(text: &str, error: &toml::de::Error) -> (usize, usize, String) {
-    let start = error.span().map_or(0, |span| span.start).min(text.len());
-    let before = &text[..start];
+/// Line and column of the byte `start`, both counted from 1.
+pub fn place_in(text: &str, start: usize) -> (usize, usize) {
+    let before = &text[..start.min(text.len())];
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+    (line, column)
+}
+
+/// Why a text is no TOML of the kind that was expected: line and column, both counted from 1, and the reason.
+pub fn toml_fault(text: &str, error: &toml::de::Error) -> (usize, usize, String) {
+    let (line, column) = place_in(text, error.span().map_or(0, |span| span.start));
     (line, column, suggesting(&error.message().replace('\n', " ")))
 }
 

@@ -47,12 +47,13 @@ pub struct Reach {
 /// # Errors
 /// [`ReachError`] at the first instant where the force is out of reach.
 pub fn check_reach(simulation: &Simulation<'_>, domain: &Domain) -> Result<Reach, ReachError> {
-    find_reach(simulation).map_err(|(length_m, what)| {
+    let reach = find_reach(simulation).map_err(|(length_m, what)| {
         let [shortest_m, longest_m] = domain.length_m;
         let recorded_mm =
             (length_m < shortest_m || length_m > longest_m).then_some([1e3 * shortest_m, 1e3 * longest_m]);
         ReachError { what, recorded_mm, help: help(simulation, domain) }
-    })
+    })?;
+    Ok(Reach { pressure_pa: pressures_pa(simulation), ..reach })
 }
 
 /// What would bring a lift that is out of reach, or that did not begin, into reach.
@@ -137,28 +138,49 @@ fn goes_well(simulation: &Simulation<'_>, plan: &LiftPlan) -> bool {
     outcomes.iter().all(|outcome| outcome.began && outcome.is_clean())
 }
 
-/// The reach, or the length and the reason where it ends.
+/// Lowest and highest pressure that a reference within reach takes.
+fn pressures_pa(simulation: &Simulation<'_>) -> [f64; 2] {
+    let [lowest_pa, highest_pa] = simulation.plan.control.pressure_limits_pa;
+    let inverse = ExactInverse::new(simulation.model.clone(), lowest_pa, highest_pa);
+    let mut range_pa = [f64::INFINITY, f64::NEG_INFINITY];
+    let visited = along_reference(simulation, &mut |at, length_m, needed_n| {
+        let pressure_pa = inverse.pressure_pa(needed_n, length_m, direction(at)).pressure_pa;
+        range_pa = [range_pa[0].min(pressure_pa), range_pa[1].max(pressure_pa)];
+    });
+    debug_assert!(visited.is_ok(), "the reference is within reach");
+    range_pa
+}
+
+/// The lengths of the reach, or the length and the reason where it ends. Pressures, which take most of the time, are left to
+/// [`pressures_pa`]: a search asks for some hundred reaches.
 fn find_reach(simulation: &Simulation<'_>) -> Result<Reach, (f64, OutOfReach)> {
+    let mut reach = Reach { length_m: [f64::INFINITY, 0.0], pressure_pa: [f64::INFINITY, f64::NEG_INFINITY] };
+    along_reference(simulation, &mut |_, length_m, _| {
+        reach.length_m = [reach.length_m[0].min(length_m), reach.length_m[1].max(length_m)];
+    })?;
+    Ok(reach)
+}
+
+/// Walks along the reference with the arm as told and as it is: instant, length and force that is needed there.
+fn along_reference(
+    simulation: &Simulation<'_>,
+    visit: &mut dyn FnMut(&ReferenceAt, f64, f64),
+) -> Result<(), (f64, OutOfReach)> {
     let plan = simulation.plan;
     let real = simulation.physics(&Deviation::none(plan), simulation.plant);
     let told = MusclePhysics::new(simulation.model, 1.0, plan.presliding_m, 0.0);
     for muscle in [&told, &real.muscle] {
         check_bare(simulation, muscle)?;
     }
-    let [lowest_pa, highest_pa] = plan.control.pressure_limits_pa;
-    let inverse = ExactInverse::new(simulation.model.clone(), lowest_pa, highest_pa);
-    let mut reach = Reach { length_m: [f64::INFINITY, 0.0], pressure_pa: [f64::INFINITY, f64::NEG_INFINITY] };
     for (elbow, muscle) in [(Elbow::new(&plan.load, &plan.forearm), &told), (real.elbow, &real.muscle)] {
         for index in 0..=INSTANTS {
             let time_s = plan.reference.duration_s * f64::from(index) / f64::from(INSTANTS);
             let at = plan.reference.at(time_s);
             let (length_m, needed_n) = check_instant(simulation, &elbow, muscle, time_s, at)?;
-            let pressure_pa = inverse.pressure_pa(needed_n, length_m, direction(&at)).pressure_pa;
-            reach.length_m = [reach.length_m[0].min(length_m), reach.length_m[1].max(length_m)];
-            reach.pressure_pa = [reach.pressure_pa[0].min(pressure_pa), reach.pressure_pa[1].max(pressure_pa)];
+            visit(&at, length_m, needed_n);
         }
     }
-    Ok(reach)
+    Ok(())
 }
 
 fn direction(at: &ReferenceAt) -> f64 {

@@ -178,7 +178,7 @@ fn standing(
 fn own_reasons(record: &Record, common: &[(String, String, usize)]) -> Vec<Reason> {
     let is_common = |what: &str| common.iter().any(|(make, known, _)| *make == record.campaign.make && known == what);
     let words = |what: String| match what.as_str() {
-        "unexplained" => "part of the mismatch has no name".to_owned(),
+        "unexplained" => "unmodelled structure is left".to_owned(),
         "explained-in-part" => "the named effects explain part of the mismatch".to_owned(),
         _ => format!("missing physics: {what}"),
     };

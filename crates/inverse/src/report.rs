@@ -13,7 +13,7 @@ use crate::samples::{Samples, Scaling, part};
 use crate::train::{Trained, train};
 use crate::{ExactInverse, InverseError, InverseNetwork};
 
-/// Least share of the box that must be invertible, in percent.
+/// Least share of the operating range that must be invertible, in percent.
 const LEAST_INVERTIBLE_PERCENT: f64 = 1.0;
 
 /// A model that can be inverted, and points to train at.
@@ -137,7 +137,7 @@ impl Outcome {
         let mut warnings = Vec::new();
         if errors.coverage.flat_percent > 0.0 || errors.coverage.ambiguous_percent > 0.0 {
             warnings.push(format!(
-                "{:.1} % of the box has no inverse: force grows too little with pressure there, or falls",
+                "{:.1} % of the operating range has no inverse: force grows too little with pressure there, or falls",
                 errors.coverage.flat_percent + errors.coverage.ambiguous_percent
             ));
         }

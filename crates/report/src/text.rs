@@ -43,6 +43,17 @@ pub fn shortened(name: &str, room: usize) -> String {
     letters[..head].iter().chain(&['…']).chain(&letters[letters.len() - (kept - head)..]).collect()
 }
 
+/// Names in at most `room` columns each: where that makes two the same, without what all of them begin with.
+pub fn told_apart(names: &[&str], room: usize) -> Vec<String> {
+    let short: Vec<String> = names.iter().map(|name| shortened(name, room)).collect();
+    let is_twice = |index: usize| short[..index].contains(&short[index]) && !names[..index].contains(&names[index]);
+    let Some((first, others)) = names.split_first().filter(|_| (0..short.len()).any(is_twice)) else { return short };
+    let alike = |other: &&str| first.chars().zip(other.chars()).take_while(|(left, right)| left == right).count();
+    let n_alike = others.iter().map(alike).min().unwrap_or(0);
+    let tail = |name: &&str| format!("…{}", name.chars().skip(n_alike).collect::<String>());
+    names.iter().map(|name| shortened(&tail(name), room)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,6 +71,14 @@ mod tests {
         assert_eq!(hanging("a b", "x ", "  "), "x a b");
         let long = "x".repeat(100);
         assert_eq!(wrapped(&format!("a {long} b"), ""), format!("a\n{long}\nb"));
+    }
+
+    #[test]
+    fn names_that_begin_alike_are_told_apart() {
+        let names = ["bpa10_L30cm_len244.2mm_test9.csv", "bpa10_L30cm_len281.0mm_test9.csv"];
+        assert_eq!(told_apart(&names, 22), ["…44.2mm_test9.csv", "…81.0mm_test9.csv"]);
+        assert_eq!(told_apart(&["a.csv", "b.csv"], 22), ["a.csv", "b.csv"]);
+        assert_eq!(told_apart(&[], 22), Vec::<String>::new());
     }
 
     #[test]

@@ -39,11 +39,11 @@ pub struct DiagnosisArtifact {
     /// Where model and recordings differ, the largest share first; empty where they agree.
     #[serde(rename = "where")]
     pub regions: Vec<Region>,
-    /// Effects that were left out, in order of evidence.
+    /// Effects that were left out, the one with the largest log predictive ratio first.
     pub effects: Vec<NamedEffect>,
     /// Residuals before and after.
     pub fit: DiagnosisFit,
-    /// What models the part that has no name; none where nothing does.
+    /// Empirical terms of unmodelled structure; none where nothing was found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub empirical: Option<Empirical>,
     /// Share of the excess over the noise floor (mean squares) that the effects leave unexplained, in [0, 1].
@@ -156,7 +156,7 @@ pub struct Region {
     pub unit: String,
     /// Share of the excess over the noise floor that lies inside.
     pub share_of_excess: f64,
-    /// Probability of such a concentration by chance, corrected for the number of looks.
+    /// Probability of such a concentration by chance, corrected for multiple comparisons.
     pub p_value: f64,
     /// Recording that it lies in, where it lies in one; a path.
     pub recording: Option<String>,
@@ -248,7 +248,7 @@ pub struct NamedEffect {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Evidence {
-    /// Sum over held-out blocks of `ln(mean square without / mean square with)`.
+    /// Log predictive ratio: sum over blocks left out of the fit of `ln(mean square without / mean square with)`.
     pub log_ratio: f64,
     /// Held-out RMSE without it, everything else refitted, in N.
     pub rmse_without_n: f64,
@@ -258,7 +258,7 @@ pub struct Evidence {
     pub blocks_improved: usize,
     /// Held-out blocks.
     pub n_blocks: usize,
-    /// Probability of such an improvement by chance, corrected for the number of looks.
+    /// Probability of such an improvement by chance, corrected for multiple comparisons.
     pub p_value: f64,
 }
 
@@ -302,7 +302,7 @@ pub struct Implausible {
     pub unit: String,
     /// Lowest and highest plausible value.
     pub plausible: [f64; 2],
-    /// What usually stands behind it, in words.
+    /// Likely cause, in words.
     pub likely_cause: String,
 }
 

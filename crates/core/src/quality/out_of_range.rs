@@ -4,7 +4,7 @@ use std::io;
 use std::ops::Range;
 
 use super::{ChannelQuality, RecordingQuality};
-use crate::recording::{Chunk, Recording};
+use crate::recording::{Chunk, Quantity, Recording};
 
 /// Tare that a load cell may have, in N: a slack muscle is read as flat at it, which is physics and not a range.
 const TARE_N: f64 = 20.0;
@@ -62,13 +62,22 @@ impl SensorEnds {
     pub fn reached(&self, recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<Range<usize>>> {
         let has =
             |ends: &[(String, f64)], name: &str, value: f64| ends.iter().any(|end| end.0 == name && end.1 == value);
-        let columns: [(&str, Column); 2] = [("pressure", Chunk::pressure_pa), ("force", Chunk::force_n)];
+        let columns: [(Quantity, Column); 2] =
+            [(Quantity::Pressure, Chunk::pressure_pa), (Quantity::Force, Chunk::force_n)];
         let watched: Vec<(f64, f64, Column)> = columns
             .iter()
-            .filter_map(|&(name, column)| {
+            .filter_map(|&(quantity, column)| {
+                let name = quantity.name();
                 let channel = quality.channel(name)?;
-                let low = if has(&self.low, name, channel.lowest) { channel.lowest } else { f64::NEG_INFINITY };
-                let high = if has(&self.high, name, channel.highest) { channel.highest } else { f64::INFINITY };
+                let mut low = if has(&self.low, name, channel.lowest) { channel.lowest } else { f64::NEG_INFINITY };
+                let mut high = if has(&self.high, name, channel.highest) { channel.highest } else { f64::INFINITY };
+                if let Some([told_low, told_high]) = recording.samples.sensor_range(quantity) {
+                    high = high.min(told_high);
+                    // A vented gauge and a slack muscle rest at zero, which is no end of a range.
+                    if quantity == Quantity::Force && told_low < -TARE_N {
+                        low = low.max(told_low);
+                    }
+                }
                 (low.is_finite() || high.is_finite()).then_some((low, high, column))
             })
             .collect();

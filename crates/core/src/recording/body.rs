@@ -20,6 +20,7 @@ pub(super) struct Body {
     skip_bad_rows: bool,
     force_required: bool,
     min_rows: usize,
+    sensor_ranges: [Option<[f64; 2]>; MAX_COLUMNS],
     filter: ClockFilter,
     released: Vec<Row>,
     repairs: Repairs,
@@ -48,6 +49,7 @@ impl Body {
             skip_bad_rows: options.skip_bad_rows,
             force_required: options.force_required,
             min_rows: options.min_rows.max(2),
+            sensor_ranges: options.sensor_ranges,
             filter: ClockFilter::default(),
             released: Vec::new(),
             repairs: Repairs::default(),
@@ -159,7 +161,7 @@ impl Body {
             return Err(whole(ReadErrorKind::ForceNeverVaries { force_n: first[Quantity::Force as usize] }));
         }
         self.settle(true)?;
-        let samples = self.samples.finish().map_err(spill_refusal)?;
+        let samples = self.samples.finish().map_err(spill_refusal)?.with_sensor_ranges(self.sensor_ranges);
         let segments = segments(&self.breaks, &samples);
         let ignored_columns = self.parser.into_plan().ignored;
         Ok(Recording { path, sha256, samples, segments, repairs: self.repairs, ignored_columns })

@@ -8,7 +8,7 @@ use super::repair::SkippedRow;
 use super::row_fault::RowFault;
 use super::units::Quantity;
 use super::wording::{
-    counted, counted_rows, listed, missing_remedy, nearest_remedy, shell_quoted, shown_path, shown_place,
+    counted, counted_rows, listed, lvm_as_csv, missing_remedy, nearest_remedy, shell_quoted, shown_path, shown_place,
     skipped_clause, too_few_remedy, twice_remedy,
 };
 
@@ -91,7 +91,20 @@ pub enum ReadErrorKind {
         /// What it is.
         found: &'static str,
         /// What to do.
-        remedy: &'static str,
+        remedy: String,
+    },
+    /// A file of LabVIEW whose header does not end.
+    #[error("the header of the LabVIEW file does not end (***End_of_Header*** twice); copy the file anew")]
+    LvmHeader,
+    /// A file of LabVIEW without one column of time for all channels.
+    #[error(
+        "the LabVIEW file has no single column of time (X_Columns {found}); choose one column for X values in Write To \
+         Measurement File{}",
+        lvm_as_csv(found)
+    )]
+    LvmTime {
+        /// What the file says of it.
+        found: String,
     },
     /// A MATLAB file that contradicts itself or ends early.
     #[error("the MATLAB file is damaged or cut off ({reason}); copy it anew, or save it anew with save -v7")]
@@ -215,8 +228,8 @@ pub enum ReadErrorKind {
     /// `--map` or `--calibrate` names a column that the file lacks.
     #[error("{option} names column \"{original}\", which the file lacks; {}", nearest_remedy(nearest.as_deref(), columns))]
     NoSuchColumn {
-        /// The option.
-        option: &'static str,
+        /// The option, or the file and the table in it.
+        option: String,
         /// The name in the option.
         original: String,
         /// The nearest name in the file.
@@ -229,8 +242,8 @@ pub enum ReadErrorKind {
         "{option} names column \"{original}\", which the file has more than once; rename one of them in the header"
     )]
     AmbiguousColumn {
-        /// The option.
-        option: &'static str,
+        /// The option, or the file and the table in it.
+        option: String,
         /// The name in the option.
         original: String,
     },
@@ -244,11 +257,11 @@ pub enum ReadErrorKind {
         /// The other one.
         second: String,
     },
-    /// `--fixed` for a channel that the file has.
-    #[error("--fixed {fixed} contradicts column \"{column}\", which gives {quantity} too; leave --fixed away")]
+    /// A constant for a channel that the file has.
+    #[error("{option} contradicts column \"{column}\", which gives {quantity} too; leave it away")]
     FixedClash {
-        /// Name in the option.
-        fixed: String,
+        /// The option, or the file and the table in it.
+        option: String,
         /// Name in the file.
         column: String,
         /// The quantity.

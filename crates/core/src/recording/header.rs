@@ -1,14 +1,11 @@
 //! From names to channels: which field of a row feeds which quantity, and what the options change about it.
 
 use super::error::ReadErrorKind;
-use super::options::Target;
+use super::options::{FixedChannel, Target};
 use super::read::ReadOptions;
 use super::samples::MAX_COLUMNS;
-use super::units::{Name, Quantity, Unit};
-use super::wording::{clipped, shell_quoted};
-
-/// Longest name in a message or an artifact, in characters.
-const NAME_SHOWN: usize = 80;
+use super::units::{ISO, Name, Quantity, Unit};
+use super::wording::{shell_quoted, shown_name};
 
 /// Where one quantity comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,9 +33,22 @@ pub(crate) struct Plan {
     pub(crate) sources: [Option<Source>; MAX_COLUMNS],
     /// Columns that nothing uses.
     pub(crate) ignored: Vec<String>,
+    /// The slot that holds dates, and the one that they are counted from, in s.
+    pub(crate) dates: Option<(usize, f64)>,
 }
 
 impl Plan {
+    /// Counts dates from the first of them, which `stamps_s` holds by field: seconds since 1970 have few digits to spare.
+    pub(crate) fn count_from(&mut self, stamps_s: &[Option<f64>]) {
+        if let Some(Source::Field { slot, unit, .. }) = self.sources[Quantity::Time as usize]
+            && unit.symbol == ISO
+        {
+            let field = self.fields.iter().position(|field| *field == Some(slot));
+            let first_s = field.and_then(|field| stamps_s.get(field).copied().flatten()).unwrap_or(0.0);
+            self.dates = Some((slot, first_s));
+        }
+    }
+
     /// The field, counted from 1, that holds time.
     pub(crate) fn time_column(&self) -> u64 {
         let Some(Source::Field { slot, .. }) = self.sources[0] else { return 1 };
@@ -69,6 +79,8 @@ struct Assigned {
     field: usize,
     /// As the user wrote it: the name of the column, or the option.
     origin: String,
+    /// Whether an option gave it, on the command line or in a file.
+    by_option: bool,
     gain: f64,
     bias: f64,
     unit: &'static Unit,
@@ -78,7 +90,7 @@ struct Assigned {
 /// a column that an option uses means only what the option says, and a name that an option supplies is not
 /// looked for among the others.
 pub(crate) fn plan(names: &[Option<String>], options: &ReadOptions) -> Result<Plan, HeaderFault> {
-    let shown: Vec<String> = names.iter().map(|name| clipped(name.as_deref().unwrap_or("-"), NAME_SHOWN)).collect();
+    let shown: Vec<String> = names.iter().map(|name| shown_name(name.as_deref().unwrap_or("-"))).collect();
     let listed: Vec<String> =
         names.iter().zip(&shown).filter(|(name, _)| name.is_some()).map(|(_, shown)| shown.clone()).collect();
     let mut assigned: [Option<Assigned>; MAX_COLUMNS] = Default::default();
@@ -114,7 +126,7 @@ pub(crate) fn plan(names: &[Option<String>], options: &ReadOptions) -> Result<Pl
         .filter(|((name, taken), shown)| name.is_some() && !**taken && !shown.is_empty())
         .map(|(_, shown)| shown.clone())
         .collect();
-    Ok(Plan { fields, names: shown, sources, ignored })
+    Ok(Plan { fields, names: shown, sources, ignored, dates: None })
 }
 
 /// Columns that `--map` and `--calibrate` name.
@@ -125,29 +137,26 @@ fn from_options(
     assigned: &mut [Option<Assigned>; MAX_COLUMNS],
     taken: &mut [bool],
 ) -> Result<(), HeaderFault> {
-    let maps = options.map.iter().map(|map| ("--map", &map.name, &map.original, map.target, 1.0, 0.0));
-    let calibrations =
-        options.calibrate.iter().map(|c| ("--calibrate", &c.name, &c.original, c.target, c.gain, c.offset));
-    for (option, name, original, Target { quantity, unit }, gain, bias) in maps.chain(calibrations) {
-        let field = find(names, original, option, listed)?;
-        let origin = format!("{option} {name}");
+    let maps = options.map.iter().map(|map| (("--map", &map.name, None), &map.original, map.target, 1.0, 0.0));
+    let calibrations = options
+        .calibrate
+        .iter()
+        .map(|c| (("--calibrate", &c.name, c.origin.as_ref()), &c.original, c.target, c.gain, c.offset));
+    for ((option, name, file), original, Target { quantity, unit }, gain, bias) in maps.chain(calibrations) {
+        let field = find(names, original, file.map_or(option, String::as_str), listed)?;
+        let origin = file.cloned().unwrap_or_else(|| format!("{option} {name}"));
         if let Some(first) = &assigned[quantity as usize] {
             let first = first.origin.clone();
             return Err(ReadErrorKind::OptionTwice { quantity, first, second: origin }.into());
         }
-        assigned[quantity as usize] = Some(Assigned { field, origin, gain, bias, unit });
+        assigned[quantity as usize] = Some(Assigned { field, origin, by_option: true, gain, bias, unit });
         taken[field] = true;
     }
     Ok(())
 }
 
 /// The field called `original`: exactly, or else whatever its case.
-fn find(
-    names: &[Option<String>],
-    original: &str,
-    option: &'static str,
-    listed: &[String],
-) -> Result<usize, ReadErrorKind> {
+fn find(names: &[Option<String>], original: &str, option: &str, listed: &[String]) -> Result<usize, ReadErrorKind> {
     let original = original.trim();
     let matching = |same: &dyn Fn(&str) -> bool| -> Vec<usize> {
         let named = names.iter().enumerate().filter_map(|(index, name)| Some((index, name.as_deref()?)));
@@ -155,7 +164,7 @@ fn find(
     };
     let exact = matching(&|name| name == original);
     let found = if exact.is_empty() { matching(&|name| name.eq_ignore_ascii_case(original)) } else { exact };
-    let shown = clipped(original, NAME_SHOWN);
+    let shown = shown_name(original);
     match found.as_slice() {
         [field] => Ok(*field),
         [] => {
@@ -166,9 +175,14 @@ fn find(
                 .filter(|(distance, name)| 2 * *distance <= name.chars().count())
                 .min_by_key(|(distance, _)| *distance)
                 .map(|(_, name)| name.clone());
-            Err(ReadErrorKind::NoSuchColumn { option, original: shown, nearest, columns: listed.to_vec() })
+            Err(ReadErrorKind::NoSuchColumn {
+                option: option.to_owned(),
+                original: shown,
+                nearest,
+                columns: listed.to_vec(),
+            })
         }
-        _ => Err(ReadErrorKind::AmbiguousColumn { option, original: shown }),
+        _ => Err(ReadErrorKind::AmbiguousColumn { option: option.to_owned(), original: shown }),
     }
 }
 
@@ -191,7 +205,7 @@ fn from_names(
             return Err(HeaderFault { field: Some(field), kind: ReadErrorKind::Twice { quantity, first, second } });
         }
         let origin = shown[field].clone();
-        assigned[quantity as usize] = Some(Assigned { field, origin, gain: 1.0, bias: 0.0, unit });
+        assigned[quantity as usize] = Some(Assigned { field, origin, by_option: false, gain: 1.0, bias: 0.0, unit });
         taken[field] = true;
     }
     Ok(())
@@ -224,16 +238,16 @@ fn fixed_channels(
     let mut values = [None; MAX_COLUMNS];
     for (index, fixed) in options.fixed.iter().enumerate() {
         let quantity = fixed.quantity;
-        if let Some(Assigned { origin, .. }) = &assigned[quantity as usize] {
-            let fixed = fixed.name.clone();
-            return Err(if origin.starts_with("--") {
-                ReadErrorKind::OptionTwice { quantity, first: origin.clone(), second: format!("--fixed {fixed}") }
+        let option = |fixed: &FixedChannel| fixed.origin.clone().unwrap_or_else(|| format!("--fixed {}", fixed.name));
+        if let Some(Assigned { origin, by_option, .. }) = &assigned[quantity as usize] {
+            return Err(if *by_option {
+                ReadErrorKind::OptionTwice { quantity, first: origin.clone(), second: option(fixed) }
             } else {
-                ReadErrorKind::FixedClash { fixed, column: origin.clone(), quantity }
+                ReadErrorKind::FixedClash { option: option(fixed), column: origin.clone(), quantity }
             });
         }
         if let Some(first) = options.fixed[..index].iter().find(|other| other.quantity == quantity) {
-            let (first, second) = (format!("--fixed {}", first.name), format!("--fixed {}", fixed.name));
+            let (first, second) = (option(first), option(fixed));
             return Err(ReadErrorKind::OptionTwice { quantity, first, second });
         }
         values[quantity as usize] = Some(fixed.value);
@@ -258,9 +272,7 @@ fn resembling(
         let name = shown[field].clone();
         let kind = match read {
             Name::UnitMissing(quantity) => ReadErrorKind::UnitMissing { name, quantity },
-            Name::UnitUnknown(quantity, unit) => {
-                ReadErrorKind::UnknownUnit { name, unit: clipped(&unit, NAME_SHOWN), quantity }
-            }
+            Name::UnitUnknown(quantity, unit) => ReadErrorKind::UnknownUnit { name, unit: shown_name(&unit), quantity },
             Name::Misspelt(_, suggestion) => ReadErrorKind::UnknownColumn { name, suggestion },
             Name::Channel(..) | Name::Other => continue,
         };
@@ -276,7 +288,7 @@ fn hint(quantity: Quantity, names: &[Option<String>], taken: &[bool]) -> Option<
         let (_, last) =
             name.trim_end_matches(|c: char| !c.is_alphanumeric()).rsplit_once(|c: char| !c.is_alphanumeric())?;
         let unit = quantity.unit(last)?;
-        Some(format!("--map {quantity}_{}={}", unit.symbol, shell_quoted(&clipped(name, NAME_SHOWN))))
+        Some(format!("--map {quantity}_{}={}", unit.symbol, shell_quoted(&shown_name(name))))
     });
     let only = fitting.next()?;
     fitting.next().is_none().then_some(only)

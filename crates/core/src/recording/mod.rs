@@ -6,17 +6,19 @@
 //! no filter, derivative or memory runs across one.
 //!
 //! In the order in which bytes pass: `source` opens, decompresses and hashes; `lines` cuts; `sniff` finds the
-//! separator; `opening` and `header` give the columns a meaning, with what `options` says; `rows` reads numbers;
-//! `mat`
-//! makes columns of a MATLAB file; `clock` drops rows that contradict their neighbors; `stamps` spreads equal stamps and finds gaps; `samples` keeps.
+//! separator; `lvm` passes over the header of a LabVIEW file; `opening` and `header` give the columns a meaning, with what `options` and
+//! `channels` say; `rows` reads numbers, and `date` stamps; `mat` makes columns of a MATLAB file; `clock` drops rows that contradict their neighbors; `stamps` spreads equal stamps and finds gaps; `samples` keeps.
 
 mod body;
+mod channels;
 mod clock;
+mod date;
 mod error;
 mod expression;
 mod fields;
 mod header;
 mod lines;
+mod lvm;
 mod mat;
 mod opening;
 mod options;
@@ -33,6 +35,7 @@ mod stamps;
 mod units;
 mod wording;
 
+pub use channels::{ChannelFault, Channels, ChannelsError, ChannelsFile};
 pub use error::{Place, ReadError, ReadErrorKind};
 pub use options::{Calibration, ColumnMap, Columns, ExpressionFault, FixedChannel, OptionSyntaxError};
 pub use read::{ReadOptions, read_recording, read_recording_observed};

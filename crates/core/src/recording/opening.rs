@@ -1,11 +1,13 @@
 //! The first line that is neither blank nor a comment: a header, or a row whose columns are named elsewhere.
 
+use super::date::stamp_s;
 use super::error::{Place, ReadErrorKind};
 use super::fields::{Fields, Splitter, number};
 use super::header::{self, Plan};
+use super::lvm::{self, LvmHeader};
 use super::read::{ReadOptions, Refusal, whole};
-use super::sniff::Layout;
-use super::units::Name;
+use super::sniff::{Hints, Layout};
+use super::units::{ISO, Name, Quantity, bare_symbol};
 
 /// What the line turned out to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,15 +37,71 @@ pub(super) fn plan(
     line: &[u8],
     number: u64,
     comment: Option<&Comment>,
-    layout: Layout,
+    seen: &Seen,
     options: &ReadOptions,
 ) -> Result<(Plan, Opened), Refusal> {
-    let named = names(line, number, comment, layout, options)?;
-    let plan = header::plan(&named.names, options).map_err(|fault| {
+    let mut named = names(line, number, comment, seen.layout, options)?;
+    if named.opened == Opened::OnHeader {
+        if let Some(header) = &seen.lvm {
+            named.names = lvm::names(named.names, header);
+        }
+        if let Some(units) = &seen.hints.units {
+            for (name, unit) in named.names.iter_mut().zip(units) {
+                *name = name.take().map(|name| with_unit(&name, unit));
+            }
+        }
+    }
+    dated(&mut named.names, &seen.hints.stamps_s, options);
+    let mut plan = header::plan(&named.names, options).map_err(|fault| {
         let place = named.line.zip(fault.field).map(|(line, field)| Place { line, column: field as u64 + 1 });
         (place, fault.kind)
     })?;
+    plan.count_from(&seen.hints.stamps_s);
     Ok((plan, named.opened))
+}
+
+/// What the first look at a file has shown.
+#[derive(Debug)]
+pub(super) struct Seen {
+    pub(super) layout: Layout,
+    pub(super) hints: Hints,
+    pub(super) lvm: Option<LvmHeader>,
+}
+
+/// The text of a header: UTF-8, or what loggers on Windows write, whose letters are those of Latin-1.
+pub(super) fn decoded(field: &[u8]) -> String {
+    match std::str::from_utf8(field) {
+        Ok(text) => text.to_owned(),
+        Err(_) => field.iter().map(|&byte| char::from(byte)).collect(),
+    }
+}
+
+/// A quantity without a unit together with the unit that stands elsewhere; any other name as it is.
+pub(super) fn with_unit(name: &str, unit: &str) -> String {
+    let unit = bare_symbol(unit);
+    if matches!(Name::read(name), Name::UnitMissing(_)) && !unit.is_empty() && unit != "-" {
+        format!("{} [{unit}]", name.trim())
+    } else {
+        name.to_owned()
+    }
+}
+
+/// Marks a column of time that holds dates and has no unit, where no other gives time.
+fn dated(names: &mut [Option<String>], stamps_s: &[Option<f64>], options: &ReadOptions) {
+    let is_time =
+        |name: &Option<String>| matches!(name.as_deref().map(Name::read), Some(Name::Channel(Quantity::Time, _)));
+    if options.supply(Quantity::Time) || names.iter().any(is_time) {
+        return;
+    }
+    for (name, stamp_s) in names.iter_mut().zip(stamps_s) {
+        if let Some(text) = name
+            && stamp_s.is_some()
+            && Name::read(text).lacks_unit(Quantity::Time)
+        {
+            *text = format!("{} [{ISO}]", text.trim());
+            return;
+        }
+    }
 }
 
 fn names(
@@ -59,10 +117,12 @@ fn names(
     }
     let mut splitter = Splitter::new(layout.separator);
     let fields = splitter.split(line).map_err(|quote| (at(quote.field), ReadErrorKind::OpenQuote))?;
-    let n_numbers = fields.iter().filter(|field| number(field, layout.separator != b',').is_ok()).count();
+    let is_value = |field: &&[u8]| number(field, layout.separator != b',').is_ok() || stamp_s(field).is_some();
+    let n_numbers = fields.iter().filter(is_value).count();
     let n_filled = fields.iter().filter(|field| !field.is_empty()).count();
-    if let Some(columns) = &options.columns {
-        if n_numbers == 0 && n_filled > 1 && !options.skip_bad_rows {
+    let is_header = n_numbers == 0 && n_filled > 1;
+    if let Some(columns) = options.columns.as_ref().filter(|columns| !(is_header && columns.if_no_header)) {
+        if is_header && !options.skip_bad_rows {
             return Err((at(0), ReadErrorKind::HeaderPresent));
         }
         let (given, found) = (columns.names.len(), layout.n_fields);
@@ -85,7 +145,7 @@ fn names(
 /// Fields of a header. A separator at its end names no column.
 fn column_names(fields: Fields<'_>) -> Vec<Option<String>> {
     let n_named = (0..fields.len()).rposition(|index| !fields.get(index).is_empty()).map_or(1, |last| last + 1);
-    fields.iter().take(n_named).map(|field| Some(String::from_utf8_lossy(field).into_owned())).collect()
+    fields.iter().take(n_named).map(|field| Some(decoded(field))).collect()
 }
 
 /// A header behind `#`, as numpy writes it: as many names as the rows have fields, one of them a quantity.

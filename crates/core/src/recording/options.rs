@@ -10,6 +10,8 @@ use super::units::{Name, Quantity, Unit};
 pub struct Columns {
     /// One per column; `None` skips it.
     pub names: Vec<Option<String>>,
+    /// Whether a header of the file wins over them.
+    pub(crate) if_no_header: bool,
 }
 
 /// Another name for a column, as in `pressure_bar=P [V]`.
@@ -31,6 +33,8 @@ pub struct FixedChannel {
     pub quantity: Quantity,
     /// Its value, in SI.
     pub value: f64,
+    /// File and table that it stands in, where that is not the command line.
+    pub(crate) origin: Option<String>,
 }
 
 /// A channel computed from a transducer's reading, as in `pressure_kPa = 125 * ai0 - 12.5`.
@@ -45,6 +49,8 @@ pub struct Calibration {
     /// Result at a reading of zero.
     pub offset: f64,
     pub(crate) target: Target,
+    /// File and table that it stands in, where that is not the command line.
+    pub(crate) origin: Option<String>,
 }
 
 /// Quantity and unit that an option supplies.
@@ -194,12 +200,11 @@ fn assignment<'a>(text: &'a str, example: &'static str) -> Result<(&'a str, &'a 
     }
 }
 
-impl FromStr for Columns {
-    type Err = OptionSyntaxError;
-
-    fn from_str(text: &str) -> Result<Self, OptionSyntaxError> {
+impl Columns {
+    /// A list of names, one per column; `-` skips one.
+    pub(crate) fn of<'a>(list: impl Iterator<Item = &'a str>) -> Result<Self, OptionSyntaxError> {
         let mut names: Vec<Option<String>> = Vec::new();
-        for (index, name) in text.split(',').map(str::trim).enumerate() {
+        for (index, name) in list.map(str::trim).enumerate() {
             match name {
                 "" => return Err(OptionSyntaxError::EmptyName { position: index + 1 }),
                 "-" => names.push(None),
@@ -209,7 +214,15 @@ impl FromStr for Columns {
                 _ => names.push(Some(name.to_owned())),
             }
         }
-        Ok(Self { names })
+        Ok(Self { names, if_no_header: false })
+    }
+}
+
+impl FromStr for Columns {
+    type Err = OptionSyntaxError;
+
+    fn from_str(text: &str) -> Result<Self, OptionSyntaxError> {
+        Self::of(text.split(','))
     }
 }
 
@@ -234,7 +247,9 @@ impl FromStr for FixedChannel {
             return Err(OptionSyntaxError::FixedTime);
         }
         match value.parse::<f64>().map(|number| target.unit.si(number)) {
-            Ok(si) if si.is_finite() => Ok(Self { name: name.to_owned(), quantity: target.quantity, value: si }),
+            Ok(si) if si.is_finite() => {
+                Ok(Self { name: name.to_owned(), quantity: target.quantity, value: si, origin: None })
+            }
             _ => Err(OptionSyntaxError::NotANumber { text: value.to_owned(), example: FIXED_EXAMPLE }),
         }
     }
@@ -248,6 +263,13 @@ impl FromStr for Calibration {
         let target = Target::parse(name, CALIBRATION_EXAMPLE)?;
         let line =
             expression::parse(right).map_err(|fault| OptionSyntaxError::NotLinear { text: right.to_owned(), fault })?;
-        Ok(Self { name: name.to_owned(), original: line.column, gain: line.gain, offset: line.offset, target })
+        Ok(Self {
+            name: name.to_owned(),
+            original: line.column,
+            gain: line.gain,
+            offset: line.offset,
+            target,
+            origin: None,
+        })
     }
 }

@@ -9,14 +9,16 @@ use super::body::Body;
 use super::error::{Place, ReadError, ReadErrorKind};
 use super::fields::{is_blank, is_comment, strip_line_end};
 use super::lines::{LineReader, Lines, MAX_LINE_BYTES};
+use super::lvm;
 use super::mat;
-use super::opening::{self, Comment, Opened};
+use super::opening::{self, Comment, Opened, Seen};
 use super::options::{Calibration, ColumnMap, Columns, FixedChannel};
 use super::row_fault::RowFault;
 use super::rows::{Line, RowParser};
-use super::samples::MEMORY_ROWS;
+use super::samples::{MAX_COLUMNS, MEMORY_ROWS};
 use super::sniff::{self, Layout};
 use super::source::ByteSource;
+use super::units::Quantity;
 
 /// How to read a recording.
 #[derive(Debug, Clone)]
@@ -29,6 +31,9 @@ pub struct ReadOptions {
     pub fixed: Vec<FixedChannel>,
     /// Channels computed from a transducer's reading.
     pub calibrate: Vec<Calibration>,
+    /// Ends of the sensors' ranges, in SI and in the order of [`Quantity::ALL`](super::Quantity::ALL), as far as they are
+    /// known.
+    pub sensor_ranges: [Option<[f64; 2]>; MAX_COLUMNS],
     /// Drop and count rows that cannot be used, instead of refusing the file.
     pub skip_bad_rows: bool,
     /// Refuse a recording without force, or whose force never varies.
@@ -46,11 +51,21 @@ impl Default for ReadOptions {
             map: Vec::new(),
             fixed: Vec::new(),
             calibrate: Vec::new(),
+            sensor_ranges: [None; MAX_COLUMNS],
             skip_bad_rows: false,
             force_required: true,
             min_rows: 2,
             memory_rows: MEMORY_ROWS,
         }
+    }
+}
+
+impl ReadOptions {
+    /// Whether an option supplies `quantity`.
+    pub(super) fn supply(&self, quantity: Quantity) -> bool {
+        self.map.iter().any(|map| map.target.quantity == quantity)
+            || self.calibrate.iter().any(|line| line.target.quantity == quantity)
+            || self.fixed.iter().any(|fixed| fixed.quantity == quantity)
     }
 }
 
@@ -93,15 +108,28 @@ fn read(path: &Path, options: &ReadOptions, observe: &mut dyn FnMut(u64, u64)) -
         let shown = path.to_string_lossy().into_owned();
         return match kind {
             mat::Kind::Level5(endian) => mat::read(lines, shown, endian, options, observe),
-            mat::Kind::Level4 => Err(not_read("a MATLAB file of version 4")),
-            mat::Kind::Hdf5 => Err(not_read("a MATLAB file of version 7.3 (HDF5)")),
+            mat::Kind::Level4 => {
+                let remedy = "load it in MATLAB and save it with save -v7".to_owned();
+                Err(whole(ReadErrorKind::NotRead { found: "a MATLAB file of version 4", remedy }))
+            }
+            mat::Kind::Hdf5 => {
+                let remedy = format!("save it with save -v7, or {}", sniff::HDF5_AS_CSV);
+                Err(whole(ReadErrorKind::NotRead { found: "a MATLAB file of version 7.3 (HDF5)", remedy }))
+            }
         };
     }
     let n_mark = sniff::check_text(start).map_err(whole)?;
+    let lvm = lvm::header(&start[n_mark..]).transpose().map_err(whole)?;
+    let (n_skipped, n_lines) = lvm.as_ref().map_or((n_mark, 0), |header| (n_mark + header.n_bytes, header.n_lines));
+    let table = &start[n_skipped..];
     let n_columns = options.columns.as_ref().map(|columns| columns.names.len());
-    let layout = sniff::layout(&start[n_mark..], n_columns);
-    lines.skip(n_mark);
-    let mut reading = Reading::new(layout, options);
+    let mut layout = sniff::layout(table, n_columns);
+    if let Some(header) = &lvm {
+        layout = Layout { separator: header.separator, ..layout };
+    }
+    let seen = Seen { layout, hints: sniff::hints(table, layout), lvm };
+    lines.skip(n_skipped);
+    let mut reading = Reading::new(seen, n_lines, options);
     loop {
         if let Some((done, all)) = lines.progress() {
             observe(done, all);
@@ -114,10 +142,6 @@ fn read(path: &Path, options: &ReadOptions, observe: &mut dyn FnMut(u64, u64)) -
     }
     let sha256 = lines.sha256().map_err(whole)?;
     reading.finish(path.to_string_lossy().into_owned(), sha256)
-}
-
-fn not_read(found: &'static str) -> Refusal {
-    whole(ReadErrorKind::NotRead { found, remedy: "load it in MATLAB and save it with save -v7" })
 }
 
 /// Bytes of a piece, about: large enough that handing it to a thread costs nothing beside reading it.
@@ -156,7 +180,9 @@ fn lines_of(parser: &mut RowParser, text: &[u8]) -> Vec<Line> {
 /// The state between two lines.
 struct Reading<'a> {
     options: &'a ReadOptions,
-    layout: Layout,
+    seen: Seen,
+    /// Whether the row of units under the header is still to come.
+    units_ahead: bool,
     /// Lines taken so far.
     line: u64,
     /// The last comment before the first row.
@@ -165,14 +191,14 @@ struct Reading<'a> {
 }
 
 impl<'a> Reading<'a> {
-    fn new(layout: Layout, options: &'a ReadOptions) -> Self {
-        Self { options, layout, line: 0, comment: None, body: None }
+    fn new(seen: Seen, line: u64, options: &'a ReadOptions) -> Self {
+        Self { options, seen, units_ahead: false, line, comment: None, body: None }
     }
 
     /// Takes whole lines.
     fn take(&mut self, text: &[u8]) -> Result<(), Refusal> {
         let mut rest = text;
-        while self.body.is_none() {
+        while self.body.is_none() || self.units_ahead {
             let Some(end) = rest.iter().position(|byte| *byte == b'\n') else { return Ok(()) };
             let (line, tail) = rest.split_at(end + 1);
             if self.open(strip_line_end(line))? == Opened::OnRow {
@@ -201,9 +227,14 @@ impl<'a> Reading<'a> {
         if is_blank(line) || is_comment(line) {
             return Ok(Opened::OnHeader);
         }
+        if self.units_ahead {
+            self.units_ahead = false;
+            return Ok(Opened::OnHeader);
+        }
         let comment = self.comment.as_ref();
-        let (plan, opened) = opening::plan(line, self.line, comment, self.layout, self.options)?;
-        self.body = Some(Body::new(RowParser::new(plan, self.layout.separator), self.options));
+        let (plan, opened) = opening::plan(line, self.line, comment, &self.seen, self.options)?;
+        self.body = Some(Body::new(RowParser::new(plan, self.seen.layout.separator), self.options));
+        self.units_ahead = opened == Opened::OnHeader && self.seen.hints.units.is_some();
         if opened == Opened::OnRow {
             self.line -= 1;
         }

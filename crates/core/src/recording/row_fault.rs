@@ -28,6 +28,14 @@ pub enum RowFault {
         /// The text, shortened.
         text: String,
     },
+    /// Text that is no time stamp.
+    #[error("\"{text}\" in column \"{column}\" is no time stamp as 2026-11-23T10:15:02.125")]
+    NotADate {
+        /// Name of the column.
+        column: String,
+        /// The text, shortened.
+        text: String,
+    },
     /// NaN or infinite.
     #[error("\"{text}\" in column \"{column}\" is not finite")]
     NotFinite {

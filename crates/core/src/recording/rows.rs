@@ -1,5 +1,6 @@
 //! From the bytes of a line to the five channels of a row.
 
+use super::date::stamp_s;
 use super::fields::{NumberFault, Splitter, is_blank, is_comment, number};
 use super::header::{Plan, Source};
 use super::row_fault::RowFault;
@@ -79,6 +80,16 @@ impl RowParser {
         for (index, slot) in plan.fields.iter().enumerate() {
             let Some(slot) = slot else { continue };
             let field = fields.get(index);
+            if let Some((dates, from_s)) = plan.dates
+                && dates == *slot
+            {
+                let Some(stamp_s) = stamp_s(field) else {
+                    let (column, text) = shown(plan, index, field);
+                    return Err((index as u64 + 1, RowFault::NotADate { column, text }));
+                };
+                slots[*slot] = stamp_s - from_s;
+                continue;
+            }
             slots[*slot] = number(field, self.decimal_comma).map_err(|fault| {
                 let (column, text) = shown(plan, index, field);
                 let fault = match fault {

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::spill::Spill;
+use super::units::Quantity;
 
 /// Rows in a chunk (the last may have fewer).
 pub const CHUNK_ROWS: usize = 16_384;
@@ -27,6 +28,7 @@ pub(crate) const MAX_COLUMNS: usize = 5;
 pub struct Samples {
     n_rows: usize,
     layout: Layout,
+    sensor_ranges: [Option<[f64; 2]>; MAX_COLUMNS],
     in_memory: Vec<Arc<Vec<f64>>>,
     spilled: Option<Arc<Spill>>,
 }
@@ -73,6 +75,16 @@ impl Samples {
     /// Whether force was recorded.
     pub fn has_force(&self) -> bool {
         self.layout.has_force
+    }
+
+    /// Ends of the range of the sensor of `quantity`, in SI, where they were told.
+    pub fn sensor_range(&self, quantity: Quantity) -> Option<[f64; 2]> {
+        self.sensor_ranges[quantity as usize]
+    }
+
+    /// The same samples of sensors with these ranges, in the order of [`Quantity::ALL`].
+    pub(crate) fn with_sensor_ranges(self, sensor_ranges: [Option<[f64; 2]>; MAX_COLUMNS]) -> Self {
+        Self { sensor_ranges, ..self }
     }
 
     /// Whether temperature was recorded.
@@ -191,6 +203,7 @@ impl SamplesBuilder {
             samples: Samples {
                 n_rows: 0,
                 layout: Layout { has_force, has_temperature },
+                sensor_ranges: [None; MAX_COLUMNS],
                 in_memory: Vec::new(),
                 spilled: None,
             },

@@ -1,7 +1,10 @@
 //! First look at a file: whether it is text, what separates its columns and how many there are.
 
+use super::date::stamp_s;
 use super::error::ReadErrorKind;
 use super::fields::{Fields, Splitter, is_blank, is_comment, number, strip_line_end};
+use super::opening::decoded;
+use super::units::is_symbol;
 
 /// Bytes that decide whether a file is text.
 const TEXT_BYTES: usize = 4096;
@@ -25,15 +28,33 @@ const MAGIC: [(&[u8], &str, &str); 5] = [
 ];
 
 /// Formats of recordings that are known and not read.
-const NOT_READ: [(&[u8], &str, &str); 2] = [
+const NOT_READ: [(&[u8], &str, &str); 4] = [
     (
         b"PAR1",
         "a Parquet file",
         "write it as CSV: python3 -c 'import pandas, sys; pandas.read_parquet(sys.argv[1]).to_csv(sys.argv[2], \
          index=False)' log.parquet log.csv",
     ),
-    (b"\x89HDF", "an HDF5 file", "export it as CSV"),
+    (b"\x89HDF", "an HDF5 file", HDF5_AS_CSV),
+    (b"TDSm", "a TDMS file of LabVIEW", TDMS_AS_CSV),
+    (
+        b"TDSh",
+        "the index of a TDMS file of LabVIEW",
+        "name the .tdms file beside it; it is not read either, and its message says how to convert it",
+    ),
 ];
+
+/// What to do about HDF5, MATLAB's own included: vectors of equal length become columns.
+pub(super) const HDF5_AS_CSV: &str = "write it as CSV: python3 -c 'import h5py, pandas, sys; d = {}; \
+     h5py.File(sys.argv[1]).visititems(lambda n, o: d.update({n: pandas.Series(o[()].ravel())}) \
+     if isinstance(o, h5py.Dataset) and o.dtype.kind in \"fiu\" and o.size == max(o.shape or [0]) else None); \
+     pandas.DataFrame(d).to_csv(sys.argv[2], index=False)' log.h5 log.csv";
+
+/// What to do about TDMS.
+const TDMS_AS_CSV: &str = "write it as CSV: python3 -c 'import nptdms, sys; \
+     d = nptdms.TdmsFile.read(sys.argv[1]).as_dataframe(time_index=True); \
+     d.columns = [c.split(chr(39))[-2] for c in d.columns]; \
+     d.rename_axis(\"time_s\").to_csv(sys.argv[2])' log.tdms log.csv";
 
 /// Checks that `start` begins a text; returns the length of its byte order mark.
 pub(crate) fn check_text(start: &[u8]) -> Result<usize, ReadErrorKind> {
@@ -44,7 +65,7 @@ pub(crate) fn check_text(start: &[u8]) -> Result<usize, ReadErrorKind> {
     }
     for (magic, found, remedy) in NOT_READ {
         if start.starts_with(magic) {
-            return Err(ReadErrorKind::NotRead { found, remedy });
+            return Err(ReadErrorKind::NotRead { found, remedy: remedy.to_owned() });
         }
     }
     if start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff") {
@@ -78,16 +99,46 @@ pub(crate) struct Layout {
     pub(crate) space_separated: bool,
 }
 
-/// Finds the separator that makes the first rows alike and numeric; `n_columns` where the user has said how
-/// many there are.
-pub(crate) fn layout(start: &[u8], n_columns: Option<usize>) -> Layout {
-    let rows: Vec<&[u8]> = start
+/// What the first rows below the header tell of its columns.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Hints {
+    /// A row of units under the header, field by field.
+    pub(crate) units: Option<Vec<String>>,
+    /// Dates of the first row of values, field by field, in s.
+    pub(crate) stamps_s: Vec<Option<f64>>,
+}
+
+/// Looks at the rows below the first one.
+pub(crate) fn hints(start: &[u8], layout: Layout) -> Hints {
+    let mut rows = content(start).skip(1);
+    let mut splitter = Splitter::new(layout.separator);
+    let mut fields = |row: &[u8]| -> Vec<Vec<u8>> {
+        splitter.split(row).map(|fields| fields.iter().map(<[u8]>::to_vec).collect()).unwrap_or_default()
+    };
+    let mut first = rows.next().map(&mut fields).unwrap_or_default();
+    let names: Vec<String> = first.iter().map(|field| decoded(field)).collect();
+    let is_value = |field: &Vec<u8>| number(field, layout.separator != b',').is_ok() || stamp_s(field).is_some();
+    // A single letter is a symbol by chance.
+    let is_units = names.iter().filter(|name| is_symbol(name)).count() > 1 && !first.iter().any(is_value);
+    if is_units {
+        first = rows.next().map(&mut fields).unwrap_or_default();
+    }
+    Hints { units: is_units.then_some(names), stamps_s: first.iter().map(|field| stamp_s(field)).collect() }
+}
+
+/// Rows of the first look that are neither blank nor comments; the last may be cut off.
+fn content(start: &[u8]) -> impl Iterator<Item = &[u8]> {
+    start
         .split_inclusive(|byte| *byte == b'\n')
         .filter(|line| line.ends_with(b"\n") || line.len() < start.len() || start.len() < TEXT_BYTES)
         .map(strip_line_end)
         .filter(|line| !is_blank(line) && !is_comment(line))
-        .take(SAMPLE_ROWS)
-        .collect();
+}
+
+/// Finds the separator that makes the first rows alike and numeric; `n_columns` where the user has said how
+/// many there are.
+pub(crate) fn layout(start: &[u8], n_columns: Option<usize>) -> Layout {
+    let rows: Vec<&[u8]> = content(start).take(SAMPLE_ROWS).collect();
     let ranked = SEPARATORS.map(|separator| {
         let mut splitter = Splitter::new(separator);
         let counts: Vec<usize> = rows.iter().map(|row| count(row, separator, &mut splitter)).collect();

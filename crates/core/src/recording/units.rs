@@ -40,7 +40,29 @@ impl Unit {
     }
 }
 
-const TIME: [Unit; 3] = [Unit::new("s", 1.0, 1.0), Unit::new("ms", 1.0, 1e3), Unit::new("us", 1.0, 1e6)];
+/// Dates are seconds as well, once they are read.
+const TIME: [Unit; 4] =
+    [Unit::new("s", 1.0, 1.0), Unit::new("ms", 1.0, 1e3), Unit::new("us", 1.0, 1e6), Unit::new(ISO, 1.0, 1.0)];
+
+/// Unit of a column of dates: ISO 8601.
+pub(crate) const ISO: &str = "iso";
+
+/// Other words for quantities, in lower case. A travel ("Weg") is no length: its zero is elsewhere.
+const OTHER_WORDS: [(&str, Quantity); 9] = [
+    ("zeit", Quantity::Time),
+    ("timestamp", Quantity::Time),
+    ("datetime", Quantity::Time),
+    ("zeitstempel", Quantity::Time),
+    ("druck", Quantity::Pressure),
+    ("länge", Quantity::Length),
+    ("laenge", Quantity::Length),
+    ("kraft", Quantity::Force),
+    ("temperatur", Quantity::Temperature),
+];
+
+/// Other spellings of units.
+const OTHER_SYMBOLS: [(&str, &str); 6] =
+    [("sec", "s"), ("msec", "ms"), ("µs", "us"), ("μs", "us"), ("°C", "C"), ("degC", "C")];
 
 /// The pound-force per square inch follows from the international inch and pound.
 const PRESSURE: [Unit; 5] = [
@@ -108,11 +130,15 @@ impl Quantity {
     }
 
     pub(crate) fn unit(self, symbol: &str) -> Option<&'static Unit> {
+        let other = OTHER_SYMBOLS.iter().find(|(other, _)| other.eq_ignore_ascii_case(symbol));
+        let symbol = other.map_or(symbol, |(_, symbol)| symbol);
         self.units().iter().find(|unit| unit.symbol.eq_ignore_ascii_case(symbol))
     }
 
     fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|quantity| quantity.name().eq_ignore_ascii_case(name))
+        let lower = name.to_lowercase();
+        let other = OTHER_WORDS.iter().find(|(word, _)| *word == lower).map(|(_, quantity)| *quantity);
+        other.or_else(|| Self::ALL.into_iter().find(|quantity| quantity.name() == lower))
     }
 
     /// The quantity that `word` misspells: one letter off, two in a long word.
@@ -155,6 +181,15 @@ impl Name {
         if let Some(quantity) = Quantity::from_name(name) {
             return Self::UnitMissing(quantity);
         }
+        // "Druck [bar]" and "Force (N)" are what spreadsheets and loggers make of a quantity and its unit.
+        if let Some((word, symbol)) = bracketed(name)
+            && let Some(quantity) = Quantity::from_name(word)
+        {
+            return match quantity.unit(symbol) {
+                Some(unit) => Self::Channel(quantity, unit),
+                None => Self::UnitUnknown(quantity, symbol.to_owned()),
+            };
+        }
         let Some((word, symbol)) = name.rsplit_once('_') else {
             return match Quantity::resembling(name) {
                 Some(quantity) => Self::Misspelt(quantity, quantity.example()),
@@ -176,6 +211,11 @@ impl Name {
         }
     }
 
+    /// Whether the name is that of a quantity, and only its unit is missing.
+    pub(crate) fn lacks_unit(&self, of: Quantity) -> bool {
+        *self == Self::UnitMissing(of)
+    }
+
     /// The quantity that the name means, rightly spelt or not.
     pub(crate) fn quantity(&self) -> Option<Quantity> {
         match self {
@@ -186,6 +226,26 @@ impl Name {
             Self::Other => None,
         }
     }
+}
+
+/// A word and what stands in brackets behind it.
+fn bracketed(name: &str) -> Option<(&str, &str)> {
+    [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
+        let (word, symbol) = name.strip_suffix(close)?.split_once(open)?;
+        Some((word.trim(), symbol.trim()))
+    })
+}
+
+/// Whether `text` is the symbol of a unit, in brackets or not.
+pub(crate) fn is_symbol(text: &str) -> bool {
+    let symbol = bare_symbol(text);
+    Quantity::ALL.into_iter().any(|quantity| quantity.unit(symbol).is_some())
+}
+
+/// The symbol of a unit without brackets around it.
+pub(crate) fn bare_symbol(text: &str) -> &str {
+    let text = text.trim();
+    bracketed(text).filter(|(word, _)| word.is_empty()).map_or(text, |(_, symbol)| symbol)
 }
 
 #[cfg(test)]
@@ -245,6 +305,16 @@ mod tests {
         {
             assert_eq!(Name::read(name), Name::Other, "{name}");
         }
+        for (name, value, expected) in
+            [("Druck [bar]", 2.0, 2e5), ("Force (kN)", 2.0, 2e3), ("Länge[mm]", 2.0, 0.002), ("Zeit_ms", 2.0, 0.002)]
+        {
+            assert_eq!(si(name, value), expected, "{name}");
+        }
+        assert_eq!(si("Temperatur [°C]", 20.0), 293.15);
+        for name in ["Weg [mm]", "Druck Soll [bar]", "P [V]"] {
+            assert_eq!(Name::read(name), Name::Other, "{name}");
+        }
+        assert_eq!(Name::read("Kraft [V]"), Name::UnitUnknown(Quantity::Force, "V".to_owned()));
         assert_eq!(Name::read("force_Nm"), Name::UnitUnknown(Quantity::Force, "Nm".to_owned()));
         assert_eq!(Name::read("Force"), Name::UnitMissing(Quantity::Force));
     }

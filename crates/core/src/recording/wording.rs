@@ -58,6 +58,18 @@ pub(super) fn missing_remedy(quantity: Quantity, hint: Option<&str>) -> String {
     }
 }
 
+/// What converts a file of LabVIEW that has no column of time, but a constant rate.
+pub(super) fn lvm_as_csv(x_columns: &str) -> &'static str {
+    match x_columns {
+        "No" => {
+            ", or write it as CSV: python3 -c 'import lvm_read, pandas, sys; s = lvm_read.read(sys.argv[1])[0]; \
+             d = pandas.DataFrame(s[\"data\"], columns=s[\"Channel names\"][:s[\"Channels\"]]); \
+             d.insert(0, \"time_s\", d.index * s[\"Delta_X\"][0]); d.to_csv(sys.argv[2], index=False)' log.lvm log.csv"
+        }
+        _ => "",
+    }
+}
+
 pub(super) fn nearest_remedy(nearest: Option<&str>, columns: &[String]) -> String {
     match nearest {
         Some(nearest) => format!("did you mean \"{nearest}\"?"),
@@ -89,6 +101,14 @@ pub(super) fn listed(columns: &[String]) -> String {
 pub(super) fn shell_quoted(name: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
     if !name.is_empty() && name.chars().all(plain) { name.to_owned() } else { format!("\"{name}\"") }
+}
+
+/// Longest name in a message or an artifact, in characters.
+const NAME_SHOWN: usize = 80;
+
+/// A name as messages show it.
+pub(super) fn shown_name(name: &str) -> String {
+    clipped(name, NAME_SHOWN)
 }
 
 /// `text` on one line, at most `limit` characters.

@@ -88,8 +88,8 @@ fn other_formats_are_named_with_the_way_out() {
     hdf5[125] = 2;
     hdf5.resize(512, 0);
     hdf5.extend(b"\x89HDF\r\n\x1a\n");
-    assert_snapshot!(refusal(hdf5, &ReadOptions::default()), @"log.csv: this is a MATLAB file of version 7.3 (HDF5), which is not read; load it in MATLAB and save it with save -v7");
-    assert_snapshot!(refusal(b"\x89HDF\r\n\x1a\n", &ReadOptions::default()), @"log.csv: this is an HDF5 file, which is not read; export it as CSV");
+    assert_snapshot!(refusal(hdf5, &ReadOptions::default()), @r#"log.csv: this is a MATLAB file of version 7.3 (HDF5), which is not read; save it with save -v7, or write it as CSV: python3 -c 'import h5py, pandas, sys; d = {}; h5py.File(sys.argv[1]).visititems(lambda n, o: d.update({n: pandas.Series(o[()].ravel())}) if isinstance(o, h5py.Dataset) and o.dtype.kind in "fiu" and o.size == max(o.shape or [0]) else None); pandas.DataFrame(d).to_csv(sys.argv[2], index=False)' log.h5 log.csv"#);
+    assert_snapshot!(refusal(b"\x89HDF\r\n\x1a\n", &ReadOptions::default()), @r#"log.csv: this is an HDF5 file, which is not read; write it as CSV: python3 -c 'import h5py, pandas, sys; d = {}; h5py.File(sys.argv[1]).visititems(lambda n, o: d.update({n: pandas.Series(o[()].ravel())}) if isinstance(o, h5py.Dataset) and o.dtype.kind in "fiu" and o.size == max(o.shape or [0]) else None); pandas.DataFrame(d).to_csv(sys.argv[2], index=False)' log.h5 log.csv"#);
     assert_snapshot!(refusal(b"PAR1\x15\x04\x15\0", &ReadOptions::default()), @"log.csv: this is a Parquet file, which is not read; write it as CSV: python3 -c 'import pandas, sys; pandas.read_parquet(sys.argv[1]).to_csv(sys.argv[2], index=False)' log.parquet log.csv");
 }
 

@@ -107,7 +107,7 @@ fn options_that_do_not_fit_the_file_are_refused() {
     assert_snapshot!(refusal(log, &options(["--map force_N=U12"])), @r#"log.csv: --map names column "U12", which the file lacks; it has time_s, pressure_kPa, length_mm, force_N"#);
     assert_snapshot!(refusal(log, &options(["--calibrate force_N = 2 * ai0"])), @r#"log.csv: --calibrate names column "ai0", which the file lacks; it has time_s, pressure_kPa, length_mm, force_N"#);
     assert_snapshot!(refusal("a,a\n1,2\n", &options(["--map force_N=a"])), @r#"log.csv: --map names column "a", which the file has more than once; rename one of them in the header"#);
-    assert_snapshot!(refusal(log, &options(["--fixed length_mm=126.75"])), @r#"log.csv: --fixed length_mm contradicts column "length_mm", which gives length too; leave --fixed away"#);
+    assert_snapshot!(refusal(log, &options(["--fixed length_mm=126.75"])), @r#"log.csv: --fixed length_mm contradicts column "length_mm", which gives length too; leave it away"#);
     assert_snapshot!(refusal(log, &options(["--map length_mm=length_mm", "--fixed length_mm=126.75"])), @"log.csv: --map length_mm and --fixed length_mm both supply length; leave one away");
     assert_snapshot!(refusal(log, &options(["--map force_N=force_N", "--calibrate force_N = length_mm"])), @"log.csv: --map force_N and --calibrate force_N both supply force; leave one away");
     assert_snapshot!(refusal("1,2\n", &options(["--fixed length_mm=1", "--fixed length_m=1", "--columns time_s,force_N"])), @"log.csv: --fixed length_mm and --fixed length_m both supply length; leave one away");

@@ -50,8 +50,8 @@ pub struct PageTerm {
 pub(super) fn empirical(page: Option<&PageEmpirical>) -> Result<String, FigureError> {
     let Some(page) = page else { return Ok(String::new()) };
     let [without_n, with_n] = page.left_n.map(newtons);
-    let on = if page.of_holdout { "held-out recordings" } else { "held-out blocks" };
-    let mut html = heading("What models the rest");
+    let on = if page.of_holdout { "held-out recordings" } else { "blocks left out of the fit" };
+    let mut html = heading("Unmodelled structure, as empirical terms");
     html.push_str(&paragraph(&format!(
         "No effect of the catalogue explains the rest. An empirical equation, found in these recordings, lowers the error on \
          {on} from {without_n} to {with_n}. It describes and does not explain; outside the range that was seen it fades to zero."

@@ -96,7 +96,7 @@ pub(super) fn unknown(page: &DiagnosisPage, recordings: &[Samples]) -> Result<St
     }
     if !unknown.implausible.is_empty() {
         html.push_str(&heading("Base parameters that no such muscle has"));
-        let mut rows = Table::new(["parameter", "value", "plausible", "what usually stands behind it"]);
+        let mut rows = Table::new(["parameter", "value", "plausible", "likely cause"]);
         for entry in &unknown.implausible {
             let [from, to] = entry.plausible.map(|value| engineering(value, &entry.unit, 3));
             let value = engineering(entry.value, &entry.unit, 3);

@@ -10,7 +10,7 @@ pub(super) fn headline(page: &DiagnosisPage) -> String {
         PageVerdict::Explained => ("explained", "The mismatch is explained"),
         PageVerdict::ExplainedInPart => ("explained-in-part", "The mismatch is explained in part"),
         PageVerdict::Ambiguous => ("ambiguous", "The mismatch has more than one explanation"),
-        PageVerdict::Unexplained => ("unexplained", "Part of the mismatch has no name"),
+        PageVerdict::Unexplained => ("unexplained", "Unmodelled structure is left"),
     };
     let words = match &page.as_given {
         Some(given) if given.misses => "The model as given is not that of these recordings",

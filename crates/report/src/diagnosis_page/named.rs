@@ -11,11 +11,13 @@ pub(super) fn named(page: &DiagnosisPage) -> String {
         0 if page.verdict == PageVerdict::Consistent => paragraph("Nothing that matters in these recordings."),
         0 => paragraph("No effect of the catalogue explains what is there."),
         1 => paragraph("One effect that the model leaves out is named."),
-        n => paragraph(&format!("{n} effects that the model leaves out are named, in order of evidence.")),
+        n => paragraph(&format!(
+            "{n} effects that the model leaves out are named, the one with the largest log predictive ratio first."
+        )),
     };
     html.extend(page.effects.iter().map(effect));
     if !page.candidates.is_empty() {
-        html.push_str(&heading("What was weighed"));
+        html.push_str(&heading("Candidates"));
         let (telling, rest): (Vec<&PageCandidate>, Vec<&PageCandidate>) =
             page.candidates.iter().partition(|candidate| tells(candidate));
         if telling.is_empty() {
@@ -25,7 +27,7 @@ pub(super) fn named(page: &DiagnosisPage) -> String {
         }
         html.push_str(&remark(
             "Each candidate alone, fitted jointly with the base model to all blocks but one and judged on that one, in \
-             turn. Evidence is the sum over held-out blocks of ln(mean square without / mean square with).",
+             turn. The log predictive ratio is the sum over the blocks of ln(mean square without / mean square with).",
         ));
         if !rest.is_empty() {
             let n = rest.len();
@@ -112,8 +114,8 @@ fn evidence(evidence: &PageEvidence) -> String {
     format!(
         "Fitted to all blocks of the recordings but one and judged on that one, in turn, it lowers the residual in \
          {blocks_improved} of {n_blocks} blocks, from {} without it (everything else refitted) to {} with it. The \
-         evidence, Σ ln(mean square without / with), is {}; the probability of such an improvement by chance, \
-         corrected for the number of looks, is {}.",
+         log predictive ratio, Σ ln(mean square without / with), is {}; the probability of such an improvement by chance, \
+         corrected for multiple comparisons, is {}.",
         newtons(rmse_without_n),
         newtons(rmse_with_n),
         significant(log_ratio, 3),
@@ -136,7 +138,7 @@ fn alternative(alternative: &PageAlternative) -> String {
 }
 
 fn candidates(candidates: &[&PageCandidate]) -> Table {
-    let mut table = Table::new(["candidate", "explains", "evidence", "blocks improved", "p", "outcome"]);
+    let mut table = Table::new(["candidate", "explains", "log predictive ratio", "blocks improved", "p", "outcome"]);
     for candidate in candidates {
         let evidence = &candidate.evidence;
         table.row([

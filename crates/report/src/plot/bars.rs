@@ -72,9 +72,9 @@ mod tests {
             color: palette::BLUE,
         };
         for bars in [vec![], vec![bar("a", 3.0), bar("b", -1.0), bar("c", f64::NAN)]] {
-            let bars = Bars { title: "evidence (nats)".to_owned(), bars };
+            let bars = Bars { title: "log predictive ratio (nats)".to_owned(), bars };
             let svg = Canvas::document(400, 300, "bars", |canvas, sheet| bars.draw(canvas, sheet)).unwrap();
-            assert!(svg.contains("evidence (nats)"));
+            assert!(svg.contains("log predictive ratio (nats)"));
         }
     }
 }

@@ -12,7 +12,7 @@ use super::super::lines::LineReader;
 use super::super::read::{ReadOptions, Refusal, whole};
 use super::super::rows::RowParser;
 use super::super::samples::MAX_COLUMNS;
-use super::super::wording::clipped;
+use super::super::wording::shown_name;
 use super::array::{self, Variable};
 use super::element::{COMPRESSED, Damaged, Element, Elements};
 use super::signals::{Column, Signals};
@@ -25,9 +25,6 @@ const MAX_EXPANSION: u64 = 256;
 /// Bytes that any file may decompress to.
 const MIN_EXPANDED_BYTES: u64 = 16 << 20;
 
-/// Longest name in a message, in characters.
-const NAME_SHOWN: usize = 80;
-
 /// Rows from one report of progress to the next.
 const REPORT_ROWS: usize = 1 << 16;
 
@@ -39,7 +36,7 @@ pub(in super::super) fn read(
     options: &ReadOptions,
     observe: &mut dyn FnMut(u64, u64),
 ) -> Result<Recording, Refusal> {
-    if options.columns.is_some() {
+    if options.columns.as_ref().is_some_and(|columns| !columns.if_no_header) {
         return Err(whole(ReadErrorKind::HeaderPresent));
     }
     let limit = |stored: u64| stored.saturating_mul(MAX_EXPANSION).saturating_add(MIN_EXPANDED_BYTES);
@@ -102,7 +99,7 @@ fn variables<'a>(stored: &'a [Stored<'a>], endian: Endian) -> Result<Vec<Variabl
 fn with_objects(kind: ReadErrorKind, signals: &Signals<'_>) -> ReadErrorKind {
     match (&kind, signals.objects.first()) {
         (ReadErrorKind::Missing { .. } | ReadErrorKind::NoSuchColumn { .. }, Some((name, class))) => {
-            ReadErrorKind::MatObject { name: clipped(name, NAME_SHOWN), class: clipped(class, NAME_SHOWN) }
+            ReadErrorKind::MatObject { name: shown_name(name), class: shown_name(class) }
         }
         _ => kind,
     }

@@ -1,0 +1,9 @@
+//! Compare two models of a muscle on the same recordings.
+
+mod args;
+mod run;
+mod tables;
+
+fn main() -> std::process::ExitCode {
+    pam_cli::main_with_schema::<args::Args, pam_core::artifact::ComparisonArtifact>(run::run)
+}
