@@ -462,6 +462,9 @@ impl Case {
             };
             let logs = stage.seen(built(), world.plan.len(), true);
             work += stage.work.get();
+            if logs.iter().any(|log| log.true_force_n.iter().any(|force_n| !force_n.is_finite())) {
+                return Err(Failure { why: Unmade::Diverged, blamed: None, work });
+            }
             if !may_be_slack && slack_share(&logs) > SLACK_SHARE {
                 // Less contraction everywhere keeps the muscle taut with the effect as well.
                 world.region.taut.iter_mut().for_each(|most| *most -= 0.015);

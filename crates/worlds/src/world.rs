@@ -85,6 +85,8 @@ pub enum Unmade {
     Slack,
     /// Keeping it taut took more work than a case may.
     Work,
+    /// Two effects together, a spring and a damper, have no solution step by step.
+    Diverged,
 }
 
 /// A world, drawn.
