@@ -274,7 +274,6 @@ impl Channels {
 }
 
 /// Where a quantity comes from and the ends of its sensor's range, in SI.
-#[expect(clippy::type_complexity, reason = "both halves of one table")]
 fn checked(
     quantity: Quantity,
     table: Channel,
