@@ -27,6 +27,7 @@ use crate::plausible::implausible;
 use crate::question::{Answer, Question};
 use crate::regions::{Place, concentrated};
 use crate::search::{Found, Limits, chance};
+use crate::short;
 use crate::stand_ins;
 use crate::state::{Setting, State};
 use crate::structure::Remainder;
@@ -69,6 +70,8 @@ pub struct Diagnosis {
     pub effects: Vec<NamedEffect>,
     /// What models the part that has no name.
     pub empirical: Option<Empirical>,
+    /// Names that the recordings are too short or too coarse for, in words.
+    pub too_short: Vec<String>,
     /// Share of the mismatch that is left.
     pub unexplained_share: f64,
     /// Where structure is left.
@@ -200,6 +203,11 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         let left_over = telling(places, &[]).first().map(|region| region.coordinate);
         sizes = stand_ins::let_go(&setting, &mut found, &sizes, &question.limits, left_over);
     }
+    let lasts_s = estimation.iter().map(|prepared| prepared.quality.duration_s).sum();
+    let too_short = short::let_go(&setting, &mut found, &question.limits, lasts_s);
+    if !too_short.is_empty() && knocks.is_none() {
+        sizes = Sizes::of(&found, &question.limits);
+    }
     given.beside_effects(&question, &track, &found);
     let space = &question.space;
     observer(steps - 1, steps);
@@ -258,6 +266,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         regions,
         effects,
         empirical,
+        too_short,
         unexplained_share: sizes.share_left(),
         unexplained,
         implausible,

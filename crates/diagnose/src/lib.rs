@@ -30,6 +30,7 @@ mod regions;
 mod rehearsal;
 pub mod search;
 pub mod sheet;
+mod short;
 mod stand_ins;
 pub mod state;
 mod steps;
