@@ -204,7 +204,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         sizes = stand_ins::let_go(&setting, &mut found, &sizes, &question.limits, left_over);
     }
     let lasts_s = estimation.iter().map(|prepared| prepared.quality.duration_s).sum();
-    let too_short = short::let_go(&setting, &mut found, &question.limits, lasts_s);
+    let too_short = short::let_go(&setting, &mut found, lasts_s);
     if !too_short.is_empty() && knocks.is_none() {
         sizes = Sizes::of(&found, &question.limits);
     }

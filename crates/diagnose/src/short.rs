@@ -1,13 +1,11 @@
-//! Names that recordings are too short or too coarse for.
+//! Names that recordings are too short for.
 //!
 //! A memory with time constant `τ` bends away from a straight line by about `t / 8 τ` of what it does within `t`. Where every branch
-//! with any weight is so slow that the recordings together see a straight line, they tell a drift, and not what makes it. And where
-//! the model without an effect is nearer to held-out blocks than the sensors' own noise and steps, an effect says how their rounding
-//! went: the steps of a converter are alike wherever the muscle rests, which block after block then confirms.
+//! with any weight is so slow that the recordings together see a straight line, they tell a drift, and not what makes it.
 
 use pam_core::effects::Term;
 
-use crate::search::{Found, Limits};
+use crate::search::Found;
 use crate::state::Setting;
 
 /// Share of the shortest time constant that recordings must last: within it an exponential leaves its chord by 4 %. The false name
@@ -30,7 +28,7 @@ fn shortest_s(term: &Term) -> Option<f64> {
 }
 
 /// Lets go of names that recordings of `lasts_s` in all do not tell; what to say of each.
-pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found, limits: &Limits, lasts_s: f64) -> Vec<String> {
+pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found, lasts_s: f64) -> Vec<String> {
     let mut said = Vec::new();
     let terms = found.best.state.terms();
     for (index, term) in terms.iter().enumerate().rev() {
@@ -42,20 +40,6 @@ pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found, limits: &Limits, 
                  {:.0} s or more",
                 (LEAST_OF_MEMORY * memory_s).ceil()
             ));
-        }
-    }
-    // Hold-outs, and who says what matters, know better.
-    let is_below = found.whole.held_out.mean_square() < limits.sensor_floor_n.powi(2);
-    if is_below && !limits.confirmed && limits.matters_above_n.is_none() {
-        for index in (0..found.best.state.guesses.len()).rev() {
-            let name = found.best.state.guesses[index].effect.page().name;
-            if found.let_go(setting, index) {
-                said.push(format!(
-                    "{name} would explain something, but less than the sensors' noise and steps make ({:.2} N): record for longer, \
-                     with finer steps, and hold a recording out",
-                    limits.sensor_floor_n
-                ));
-            }
         }
     }
     said
