@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::Parser;
 use pam_cli::{ReadArgs, RunArgs};
 use pam_core::artifact::diagnosis::DiagnoseConfig;
-use pam_core::effects::CATALOGUE;
 use pam_diagnosis::diagnose::MAX_EFFECTS;
 
 /// Diagnose where a force model and recordings differ, and which physics was left out.
@@ -25,6 +24,8 @@ use pam_diagnosis::diagnose::MAX_EFFECTS;
                   pam-diagnose run1.csv --model model.json --isolability --next-experiment setpoints.csv\n\n\
                   Example: what an effect is and what it looks like\n  \
                   pam-diagnose --explain stribeck --figure stribeck.svg\n\n\
+                  Example: an effect of your own among the candidates\n  \
+                  pam-diagnose run1.csv run2.csv --model model.json --effects touching-guard.toml --out diagnosis.json\n\n\
                   Exit codes: 0 done and understood (consistent, explained, ambiguous); 1 done, and unmodelled structure is \
                   left (unexplained, explained in part), or the model as given misses the recordings, or the \
                   diagnosed one what was held out; 2 input or usage, another muscle included."
@@ -75,8 +76,13 @@ pub(crate) struct Args {
     pub(crate) max_effects: u32,
 
     /// Effect that is not considered, by id; may be repeated.
-    #[arg(long, value_name = "ID", value_parser = known)]
+    #[arg(long, value_name = "ID")]
     pub(crate) exclude: Vec<String>,
+
+    /// Effects of your own to consider beside the catalogue: a name, a sentence of the grammar and ranges (TOML, as
+    /// configs/effects/touching-guard.toml).
+    #[arg(long, value_name = "EFFECTS.toml")]
+    pub(crate) effects: Option<PathBuf>,
 
     /// Go on where ranges or correlations say that an instrument is wrong or the recording is of another muscle.
     #[arg(long)]
@@ -105,17 +111,4 @@ impl Args {
         excluded.dedup();
         DiagnoseConfig { matters_above_n: self.matters_above_n, max_effects: self.max_effects as usize, excluded }
     }
-}
-
-/// An id of the catalogue.
-pub(crate) fn known(id: &str) -> Result<String, String> {
-    let ids = || CATALOGUE.iter().map(|effect| effect.page().id);
-    if ids().any(|known| known == id) {
-        return Ok(id.to_owned());
-    }
-    let near = match pam_cli::nearest(id, ids()) {
-        Some(near) => format!("did you mean {near}?"),
-        None => "pam-diagnose --explain all lists them".to_owned(),
-    };
-    Err(format!("no effect is called \"{id}\"; {near}"))
 }

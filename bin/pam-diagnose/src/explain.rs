@@ -1,24 +1,24 @@
 //! The catalogue on the terminal, and the figure of an effect.
 
-use anyhow::{Context as _, anyhow};
+use anyhow::Context as _;
 use pam_cli::{Console, Output, Verdict, publish, write_file};
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::{self, CATALOGUE, Effect, Page, Symbol};
+use pam_core::effects::{Effect, Page, Symbol};
 use pam_diagnosis::explain::{Driven, signature};
 use pam_report::text::{hanging, wrapped};
 use pam_report::{PictureFormat, SignatureFigure, SignaturePanel, SignatureSeries, Table, signature_figure};
 
-use crate::args::{Args, known};
+use crate::args::Args;
+use crate::own::OwnEffects;
 
 /// Prints the page of effect `id`, or every id, and writes the figure if one is wanted.
-pub(crate) fn explain(args: &Args, console: &Console, id: &str) -> anyhow::Result<Verdict> {
+pub(crate) fn explain(args: &Args, own: &OwnEffects, console: &Console, id: &str) -> anyhow::Result<Verdict> {
     if id == "all" {
         anyhow::ensure!(args.figure.is_none(), "--figure draws one effect; name it instead of all");
-        write_file("-", list())?;
+        write_file("-", list(own))?;
         return Ok(Verdict::Accepted);
     }
-    let id = known(id).map_err(|message| anyhow!("--explain: {message}"))?;
-    let effect = effects::effect(&id).context("an id of the catalogue")?;
+    let effect = own.known(id).context("--explain")?;
     let figure = args.figure.as_deref().filter(|_| !args.run.check).map(Output::open_figure).transpose()?;
     write_file("-", text(effect.page()))?;
     if let Some(output) = figure {
@@ -29,9 +29,9 @@ pub(crate) fn explain(args: &Args, console: &Console, id: &str) -> anyhow::Resul
 }
 
 /// Every id with its name.
-fn list() -> String {
+fn list(own: &OwnEffects) -> String {
     let mut table = Table::new(["id", "name"]);
-    for effect in CATALOGUE {
+    for effect in own.all() {
         table.row([effect.page().id, effect.page().name]);
     }
     table.to_terminal()
@@ -56,7 +56,9 @@ fn text(page: &Page) -> String {
     for (title, words) in [("Assumptions", page.validity), ("Source", page.source), ("Signature", page.signature)] {
         text.push_str(&format!("\n{title}\n{}\n", wrapped(words, "  ")));
     }
-    text.push_str("\nConfused with\n");
+    if !page.confused_with.is_empty() {
+        text.push_str("\nConfused with\n");
+    }
     for confusion in page.confused_with {
         let words = format!("{}: {}. Told apart by {}.", confusion.id, ended(confusion.because), ended(confusion.test));
         text.push_str(&wrapped(&words, "  "));

@@ -1,11 +1,11 @@
 //! The report of a diagnosis, from the artifact and the samples behind it.
 
-use pam_core::artifact::diagnosis::{AsGiven, BeforeAfter, Coordinate, Evidence, Region, Verdict};
+use pam_core::artifact::diagnosis::{AsGiven, BeforeAfter, Coordinate, Evidence, NamedEffect, Region, Verdict};
 use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
 use pam_core::artifact::{DiagnosisArtifact, InputRole, ModelArtifact};
+use pam_core::effects::Symbol;
 use pam_core::effects::page::Confusion;
 use pam_core::effects::symbols::{symbol_of_base, symbol_of_effect};
-use pam_core::effects::{self, Page, Symbol};
 use pam_diagnosis::traces::Trace;
 use pam_report::{
     DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageCoordinate, PageEffect,
@@ -14,6 +14,7 @@ use pam_report::{
 };
 
 use crate::empirical;
+use crate::own::OwnEffects;
 use crate::provenance::Provenance;
 
 /// Everything that the report shows.
@@ -22,6 +23,7 @@ use crate::provenance::Provenance;
 pub(crate) fn page(
     artifact: &DiagnosisArtifact,
     [model, augmented]: [&ModelArtifact; 2],
+    own: &OwnEffects,
     traces: Vec<Trace>,
     provenance: Provenance,
 ) -> DiagnosisPage {
@@ -43,14 +45,14 @@ pub(crate) fn page(
         base_parameters: if with_effects { base_parameters(model, augmented) } else { Vec::new() },
         recordings: traces.into_iter().map(|trace| recording(trace, artifact, with_effects)).collect(),
         regions: significant(&artifact.regions).map(region).collect(),
-        effects: artifact.effects.iter().map(effect).collect(),
+        effects: artifact.effects.iter().map(|named| effect(named, own)).collect(),
         empirical: artifact.empirical.as_ref().map(empirical::page),
         candidates: artifact
             .candidates
             .iter()
             .map(|candidate| PageCandidate {
                 id: candidate.id.clone(),
-                name: name(&candidate.id),
+                name: name(&candidate.id, own),
                 evidence: evidence(&candidate.evidence),
                 explains: candidate.explains,
                 outcome: candidate.outcome.clone(),
@@ -73,7 +75,7 @@ pub(crate) fn page(
         next_experiment: artifact.next_experiment.as_ref().map(|next| PageExperiment {
             protocol: next.protocol.clone(),
             // What has no name is nothing that a reader could look up.
-            separates: next.separates.iter().filter(|id| catalogue(id).is_some()).cloned().collect(),
+            separates: next.separates.iter().filter(|id| own.page(id).is_some()).cloned().collect(),
             separation_n: next.separation_n,
             instruction: next.instruction.clone(),
         }),
@@ -126,13 +128,8 @@ fn base_parameters(model: &ModelArtifact, augmented: &ModelArtifact) -> Vec<Page
     parameters.chain(composites).collect()
 }
 
-/// Page of an effect in the catalogue; a competitor without a name has none.
-fn catalogue(id: &str) -> Option<&'static Page> {
-    effects::effect(id).map(|effect| effect.page())
-}
-
-fn name(id: &str) -> String {
-    catalogue(id).map_or(String::new(), |page| page.name.to_owned())
+fn name(id: &str, own: &OwnEffects) -> String {
+    own.page(id).map_or(String::new(), |page| page.name.to_owned())
 }
 
 fn fit(fit: &BeforeAfter) -> PageFit {
@@ -203,8 +200,8 @@ fn evidence(evidence: &Evidence) -> PageEvidence {
     PageEvidence { log_ratio, rmse_without_n, rmse_with_n, blocks_improved, n_blocks, p_value }
 }
 
-fn effect(effect: &pam_core::artifact::diagnosis::NamedEffect) -> PageEffect {
-    let page = catalogue(&effect.id);
+fn effect(effect: &NamedEffect, own: &OwnEffects) -> PageEffect {
+    let page = own.page(&effect.id);
     let confusions = page.map_or(&[][..], |page| page.confused_with);
     PageEffect {
         id: effect.id.clone(),
@@ -217,11 +214,11 @@ fn effect(effect: &pam_core::artifact::diagnosis::NamedEffect) -> PageEffect {
         source: page.map_or(String::new(), |page| page.source.to_owned()),
         parameters: effect.parameters.iter().map(|entry| parameter(&effect.id, entry)).collect(),
         evidence: evidence(&effect.evidence),
-        alternatives: effect.alternatives.iter().map(|id| alternative(id, confusions)).collect(),
+        alternatives: effect.alternatives.iter().map(|id| alternative(id, confusions, own)).collect(),
         look_alikes: confusions
             .iter()
             .filter(|confusion| !effect.alternatives.iter().any(|id| id == confusion.id))
-            .map(|confusion| alternative(confusion.id, confusions))
+            .map(|confusion| alternative(confusion.id, confusions, own))
             .collect(),
         separating_test: effect.separating_test.clone(),
     }
@@ -232,11 +229,11 @@ fn symbol(symbol: &Symbol) -> PageSymbol {
 }
 
 /// Effect `id` with what the page of the effect that it is mistaken for says of it.
-fn alternative(id: &str, confusions: &[Confusion]) -> PageAlternative {
+fn alternative(id: &str, confusions: &[Confusion], own: &OwnEffects) -> PageAlternative {
     let confusion = confusions.iter().find(|confusion| confusion.id == id);
     PageAlternative {
         id: id.to_owned(),
-        name: name(id),
+        name: name(id, own),
         because: confusion.map_or(String::new(), |confusion| confusion.because.to_owned()),
         test: confusion.map_or(String::new(), |confusion| confusion.test.to_owned()),
     }

@@ -11,6 +11,7 @@ use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose_observed};
 use pam_diagnosis::traces::traces;
 
 use crate::args::Args;
+use crate::own::OwnEffects;
 use crate::provenance::Provenance;
 use crate::{explain, page, tables};
 
@@ -19,8 +20,12 @@ const REPORT_SAMPLES: usize = 20_000;
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     let console = args.run.start()?;
+    let own = OwnEffects::read(args.effects.as_deref())?;
+    for id in &args.exclude {
+        own.known(id).context("--exclude")?;
+    }
     if let Some(id) = &args.explain {
-        return explain::explain(args, &console, id);
+        return explain::explain(args, &own, &console, id);
     }
     // A requirement on the command line would not hold: what --explain excludes is there.
     ensure!(
@@ -43,7 +48,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
             held_out.display()
         );
     }
-    let inputs = || args.logs.iter().chain(&args.holdout).chain(&args.model).chain(&args.read.channels);
+    let inputs =
+        || args.logs.iter().chain(&args.holdout).chain(&args.model).chain(&args.read.channels).chain(&args.effects);
     let open = |path: &Option<PathBuf>| -> anyhow::Result<Option<Output>> {
         let path = path.as_deref().filter(|_| !args.run.check);
         path.map(|path| Ok(Output::open(path)?.apart_from(inputs())?)).transpose()
@@ -63,10 +69,17 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     let mut hashes =
         vec![Input { path: model_path.display().to_string(), sha256: model_sha256, role: InputRole::Model }];
     hashes.extend(read.channels);
+    hashes.extend(own.input.clone());
     hashes.extend(estimation.iter().map(|recording| Input::recording(recording, InputRole::Estimation)));
     hashes.extend(holdout.iter().map(|recording| Input::recording(recording, InputRole::Validation)));
-    let request =
-        Request { estimation, holdout, model, config: args.config(), accept_implausible: args.accept_implausible };
+    let request = Request {
+        estimation,
+        holdout,
+        model,
+        config: args.config(),
+        effects: own.effects.clone(),
+        accept_implausible: args.accept_implausible,
+    };
     if args.run.check {
         check(request)?;
         console.note("inputs are fine; nothing was diagnosed (--check)");
@@ -92,7 +105,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     let wanted = outputs.model.is_some() || outputs.report.is_some();
     let augmented = wanted.then(|| found.model_artifact(head, &agreement));
     let provenance = Provenance::of_this_run(args.logs.iter().chain(&args.holdout).map(PathBuf::as_path));
-    outputs.write(&console, &found, &artifact, (augmented.as_ref(), provenance))?;
+    outputs.write(&console, &found, &artifact, &own, (augmented.as_ref(), provenance))?;
     Ok(match artifact.verdict {
         Verdict::Consistent | Verdict::Explained | Verdict::Ambiguous => pam_cli::Verdict::Accepted,
         Verdict::ExplainedInPart | Verdict::Unexplained => pam_cli::Verdict::Rejected,
@@ -118,6 +131,7 @@ impl Outputs {
         console: &Console,
         found: &Diagnosis,
         artifact: &DiagnosisArtifact,
+        own: &OwnEffects,
         (augmented, provenance): (Option<&ModelArtifact>, Provenance),
     ) -> anyhow::Result<()> {
         let mut outputs = Vec::new();
@@ -128,7 +142,7 @@ impl Outputs {
             outputs.push((output, pretty_json(model)?));
         }
         if let (Some(output), Some(augmented)) = (self.report, augmented) {
-            let page = page::page(artifact, [&found.model, augmented], traces(found, REPORT_SAMPLES)?, provenance);
+            let page = page::page(artifact, [&found.model, augmented], own, traces(found, REPORT_SAMPLES)?, provenance);
             outputs.push((output, pam_report::diagnosis_page(&page)?.into_bytes()));
         }
         match (self.next, &found.next_experiment) {

@@ -60,6 +60,21 @@ impl Desk {
         DESK.get_or_init(|| Self::with(&[]))
     }
 
+    /// With a bump of 9 N over the contraction in every log, which no effect of the catalogue is.
+    fn touched() -> &'static Self {
+        static DESK: OnceLock<Desk> = OnceLock::new();
+        DESK.get_or_init(|| {
+            let desk = Self::with(&[]);
+            for name in FITTED.into_iter().chain(["multisine"]) {
+                let path = desk.path(&format!("{name}.csv"));
+                let touched = touched(&std::fs::read_to_string(&path).unwrap());
+                std::fs::write(path, touched).unwrap();
+            }
+            desk.file("model.json", serde_json::to_vec(&desk.identified()).unwrap());
+            desk
+        })
+    }
+
     /// With pre-sliding.
     fn presliding() -> &'static Self {
         static DESK: OnceLock<Desk> = OnceLock::new();
@@ -336,6 +351,75 @@ fn a_check_writes_nothing() {
     assert_eq!(output.status.code(), Some(0));
     assert!(!desk.path("refused.json").exists());
     assert!(String::from_utf8(output.stderr).unwrap().ends_with("inputs are fine; nothing was diagnosed (--check)\n"));
+}
+
+/// `log` with a bump of 9 N around a contraction of 10 %.
+fn touched(log: &str) -> String {
+    let (header, rows) = log.split_once('\n').unwrap();
+    let column = |word: &str| header.split(',').position(|column| column.contains(word)).unwrap();
+    let (length, force) = (column("length"), column("force"));
+    let mut text = header.to_owned();
+    for row in rows.lines() {
+        let mut fields: Vec<String> = row.split(',').map(str::to_owned).collect();
+        let contraction = 1.0 - fields[length].parse::<f64>().unwrap() / 267.0;
+        let away = ((contraction - 0.1) / 0.04).clamp(-1.0, 1.0);
+        let bump_n = 4.5 * (1.0 + (std::f64::consts::PI * away).cos());
+        fields[force] = format!("{:.4}", fields[force].parse::<f64>().unwrap() + bump_n);
+        text.push('\n');
+        text.push_str(&fields.join(","));
+    }
+    text + "\n"
+}
+
+const GUARD: &str = r#"
+[[effect]]
+id = "touching-guard"
+name = "a guard that touches the muscle"
+driver = "contraction"
+shape = { bump = { center = [0.02, 0.25], width = [0.005, 0.05] } }
+amplitude = [-300.0, 300.0]
+"#;
+
+#[test]
+fn an_effect_of_a_users_own_is_named_and_its_model_works_without_its_file() {
+    let desk = Desk::touched();
+    desk.file("guard.toml", GUARD);
+    let (diagnosis, model) = desk.diagnosed(
+        &format!(
+            "{LOGS} --model model.json {HELD} --effects guard.toml --out diagnosis.json --out-model augmented.json"
+        ),
+        0,
+    );
+    assert_eq!(diagnosis.effects[0].id, "touching-guard");
+    assert!((diagnosis.effects[0].parameters[0].value - 0.1).abs() < 3e-3, "{:?}", diagnosis.effects[0]);
+    let fit = diagnosis.fit.holdout.unwrap();
+    assert!(fit.rmse_after_n < 0.5 * fit.rmse_before_n, "{fit:?}");
+    assert!(model.effects.iter().any(|entry| entry.sentence.is_some()));
+    let text = String::from_utf8(desk.run("--effects guard.toml --explain touching-guard").stdout).unwrap();
+    assert!(text.starts_with("A guard that touches the muscle (touching-guard)\n"), "{text}");
+}
+
+#[test]
+fn a_file_of_effects_that_cannot_be_used_is_refused_with_the_place() {
+    let desk = Desk::plain();
+    let refusal = |text: &str| {
+        desk.file("own.toml", text);
+        let output = desk.run("--effects own.toml --explain all");
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let messages = [
+        refusal(""),
+        refusal("[[effect]]\nid = 3\n"),
+        refusal(&GUARD.replace("touching-guard", "slack")),
+        refusal(&GUARD.replace("[0.005, 0.05]", "[0.05, 0.005]")),
+    ];
+    insta::assert_snapshot!(messages.concat(), @r#"
+    error: own.toml: it has no [[effect]]; configs/effects/touching-guard.toml shows one
+    error: own.toml: line 2, column 6: invalid type: integer `3`, expected a string
+    error: own.toml: effect "slack": the id is taken; give it another
+    error: own.toml: effect "touching-guard": width is no range; give its ends as [low, high], both above zero
+    "#);
 }
 
 #[test]

@@ -16,8 +16,15 @@ fn main() {
     let estimation = arguments.map(|path| read_recording(Path::new(&path), &ReadOptions::default()).unwrap()).collect();
     let config = DiagnoseConfig { matters_above_n: None, max_effects: MAX_EFFECTS, excluded: Vec::new() };
     let begin = Instant::now();
-    let mut found =
-        diagnose(Request { estimation, holdout: Vec::new(), model, config, accept_implausible: false }).unwrap();
+    let mut found = diagnose(Request {
+        estimation,
+        holdout: Vec::new(),
+        model,
+        config,
+        effects: Vec::new(),
+        accept_implausible: false,
+    })
+    .unwrap();
     let seconds = begin.elapsed().as_secs_f64();
     let agreement = Agreement::of(&found).unwrap();
     found.weigh(&agreement).unwrap();

@@ -7,7 +7,7 @@ use pam_core::artifact::diagnosis::{
 };
 use pam_core::artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
 use pam_core::effects::sentence::EMPIRICAL;
-use pam_core::effects::{AugmentedModel, Term};
+use pam_core::effects::{AugmentedModel, Effect, Sentence, Term};
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
 use pam_identification::evaluate::evaluate;
@@ -23,6 +23,7 @@ use crate::knocks::{self, Knocks};
 use crate::laws;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::nuisance::MAP_ID;
+use crate::own;
 use crate::plausible::implausible;
 use crate::question::{Answer, Question};
 use crate::regions::{Place, concentrated};
@@ -47,6 +48,8 @@ pub struct Request {
     pub model: ModelArtifact,
     /// Options.
     pub config: DiagnoseConfig,
+    /// Effects of a user's own, considered beside those of the catalogue.
+    pub effects: Vec<&'static dyn Effect>,
     /// Go on where an instrument fault is suspected.
     pub accept_implausible: bool,
 }
@@ -115,11 +118,12 @@ pub const MAX_EFFECTS: usize = 4;
 /// # Errors
 /// [`DiagnoseError`] names the recording and the remedy.
 pub fn check(request: Request) -> Result<(), DiagnoseError> {
-    let Request { estimation, holdout, model, config, accept_implausible } = request;
+    let Request { estimation, holdout, model, config, effects, accept_implausible } = request;
     let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
     let track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
-    given(&Question::new(&estimation, &model, limits(&config, &model, false)), &holdout, accept_implausible).map(|_| ())
+    given(&Question::new(&estimation, &model, limits(&config, effects, &model, false)), &holdout, accept_implausible)
+        .map(|_| ())
 }
 
 /// The model as given; recordings of clearly another muscle are refused unless they are to be accepted.
@@ -131,10 +135,11 @@ fn given(question: &Question<'_>, holdout: &[Prepared], accept_implausible: bool
     Ok(given)
 }
 
-fn limits(config: &DiagnoseConfig, model: &ModelArtifact, confirmed: bool) -> Limits {
+fn limits(config: &DiagnoseConfig, own: Vec<&'static dyn Effect>, model: &ModelArtifact, confirmed: bool) -> Limits {
     Limits {
         max_effects: config.max_effects,
         excluded: config.excluded.clone(),
+        own,
         matters_above_n: config.matters_above_n,
         sensor_floor_n: model.fit.noise_floor_n,
         confirmed,
@@ -154,11 +159,11 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
 /// # Errors
 /// As [`diagnose`].
 pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Result<Diagnosis, DiagnoseError> {
-    let Request { estimation, holdout, mut model, config, accept_implausible } = request;
+    let Request { estimation, holdout, mut model, config, effects: own, accept_implausible } = request;
     let (mut estimation, mut holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
     let mut track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
-    let limits = limits(&config, &model, !holdout.is_empty());
+    let limits = limits(&config, own, &model, !holdout.is_empty());
     let mut given = given(&Question::new(&estimation, &model, limits.clone()), &holdout, accept_implausible)?;
     // Reading the channels, each look, and what is said of the outcome; a search may end early.
     let (steps, done) = (config.max_effects as u64 + 3, std::cell::Cell::new(1));
@@ -224,11 +229,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let uncertainty = Uncertainty::of(&folds, space);
 
     let correlated = correlated_instants(&whole, &whole.residuals_n(state));
-    let (effects, mut entries) = named(&whole, &found, state, &uncertainty, correlated, knocks.as_ref());
+    let sentences = own::sentences(&whole, state);
+    let (effects, mut entries) = named(&whole, &found, state, &uncertainty, correlated, &sentences, knocks.as_ref());
     let empirical = discovery.as_ref().map(|discovery| discovery.written(&whole, &found, &folds));
     entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
     let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
-    let mut terms = state.terms();
+    let mut terms = own::terms(state.terms(), &sentences);
     if let Some(map) = nuisance.map_term(&state.fit.nuisances, &track, &found.coordinates) {
         entries.push(map_entry(&map));
         terms.push(map);
@@ -354,9 +360,10 @@ fn named(
     state: &State,
     uncertainty: &Uncertainty,
     correlated: f64,
+    sentences: &[Option<Sentence>],
     knocks: Option<&Knocks>,
 ) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
-    let mut named = Vec::new();
+    let (mut named, mut list) = (Vec::new(), Vec::new());
     let mut first = 0;
     for (index, guess) in state.guesses.iter().enumerate() {
         let page = guess.effect.page();
@@ -372,6 +379,8 @@ fn named(
             || evidence(&found.base.held_out, &found.best.held_out, found.first.len()),
             |taken| evidence(&taken.without, &taken.with, found.first.len()),
         );
+        let entry = EffectEntry { id: page.id.to_owned(), sentence: None, parameters: parameters.clone() };
+        list.push(own::entry(entry, &sentences[index], guess.shape.len()));
         named.push(NamedEffect {
             id: page.id.to_owned(),
             name: page.name.to_owned(),
@@ -382,13 +391,10 @@ fn named(
             separating_test: separating_test.to_owned(),
         });
     }
-    named.extend(knocks.map(knocking));
-    let entry = |named: &NamedEffect| EffectEntry {
-        id: named.id.clone(),
-        sentence: None,
-        parameters: named.parameters.clone(),
-    };
-    let list = named.iter().map(entry).collect();
+    if let Some(knocking) = knocks.map(knocking) {
+        list.push(EffectEntry { id: knocking.id.clone(), sentence: None, parameters: knocking.parameters.clone() });
+        named.push(knocking);
+    }
     named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
     (named, list)
 }

@@ -11,7 +11,7 @@
 use std::ops::Range;
 
 use pam_core::artifact::diagnosis::Isolability;
-use pam_core::effects::{AugmentedModel, CATALOGUE, Effect, Role, Term};
+use pam_core::effects::{AugmentedModel, Effect, Role, Term};
 use rayon::prelude::*;
 
 use crate::hypothesis::{Guess, Sign};
@@ -72,7 +72,8 @@ static TYPICAL: [Typical; 22] = [
 pub fn isolability(setting: &Setting<'_>, state: &State, noise_n: f64, n_independent: f64) -> Isolability {
     let rows = groups(setting, state).into_iter().map(|group| (group.clone(), group.len() as f64)).collect();
     let tangent = Tangent::of(setting, state, &state.sheet, rows);
-    let jobs: Vec<(usize, Guess)> = CATALOGUE
+    let jobs: Vec<(usize, Guess)> = setting
+        .effects
         .iter()
         .enumerate()
         .flat_map(|(index, &effect)| {
@@ -90,7 +91,7 @@ pub fn isolability(setting: &Setting<'_>, state: &State, noise_n: f64, n_indepen
         .collect();
     let sizes: Vec<f64> = forms.iter().map(|(_, left)| norm(left)).collect();
     let limit_n = noise_n * (STANDARD_ERRORS / n_independent.max(1.0).sqrt()).max(LEAST_SHARE_OF_NOISE);
-    let n = CATALOGUE.len();
+    let n = setting.effects.len();
     let mut visible_n = vec![0.0; n];
     let mut cosine = vec![vec![0.0; n]; n];
     for ((index, _), size) in forms.iter().zip(&sizes) {
@@ -115,7 +116,7 @@ pub fn isolability(setting: &Setting<'_>, state: &State, noise_n: f64, n_indepen
     for (index, row) in cosine.iter_mut().enumerate() {
         row[index] = 1.0;
     }
-    Isolability { ids: CATALOGUE.iter().map(|effect| effect.page().id.to_owned()).collect(), visible_n, cosine }
+    Isolability { ids: setting.effects.iter().map(|effect| effect.page().id.to_owned()).collect(), visible_n, cosine }
 }
 
 /// Runs of instants that count.
@@ -206,6 +207,8 @@ fn force_n(setting: &Setting<'_>, model: &AugmentedModel) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::rehearsal::tests::Given;
+
+    use pam_core::effects::CATALOGUE;
 
     fn of(protocols: &[&str]) -> Isolability {
         let given = Given::of(protocols, &[]);

@@ -23,6 +23,7 @@ mod laws;
 pub mod next_experiment;
 pub mod normal;
 pub mod nuisance;
+mod own;
 mod plausible;
 mod protocols;
 pub mod question;

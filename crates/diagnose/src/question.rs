@@ -1,7 +1,7 @@
 //! What a search is made with, and the search itself: on the grid, then for knocks, and then on the grid without them.
 
 use pam_core::artifact::ModelArtifact;
-use pam_core::effects::AugmentedModel;
+use pam_core::effects::{AugmentedModel, CATALOGUE, Effect};
 use pam_core::force::columns::ForceColumns;
 use pam_identification::prepare::Prepared;
 use pam_identification::search_space::SearchSpace;
@@ -28,6 +28,8 @@ pub struct Question<'a> {
     pub space: SearchSpace,
     /// Columns of eq. 11.
     pub columns: ForceColumns,
+    /// Effects that may be named: those of the catalogue, and a user's own.
+    pub effects: Vec<&'static dyn Effect>,
 }
 
 /// What came out.
@@ -50,7 +52,8 @@ impl<'a> Question<'a> {
             estimation.iter().map(|prepared| prepared.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
         let columns = ForceColumns::new(&model.geometry, model.strand_modulus_pa, model.form, largest_n_per_m);
         let space = base::search_space(model, &columns);
-        Self { estimation, model, limits, space, columns }
+        let effects = CATALOGUE.iter().chain(&limits.own).copied().collect();
+        Self { estimation, model, limits, space, columns, effects }
     }
 
     /// What fits to `track` share, beside `nuisance`.
@@ -65,6 +68,7 @@ impl<'a> Question<'a> {
             nuisance,
             floor_square: self.limits.sensor_floor_n.powi(2),
             goes_on: true,
+            effects: &self.effects,
         }
     }
 

@@ -310,6 +310,7 @@ pub(crate) mod tests {
                 nuisance: &crate::nuisance::NONE,
                 floor_square: 0.0,
                 goes_on: true,
+                effects: pam_core::effects::CATALOGUE,
             }
         }
     }

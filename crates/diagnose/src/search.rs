@@ -1,7 +1,7 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::{CATALOGUE, Effect, Kind, Role, Seen, effect};
+use pam_core::effects::{Effect, Kind, Role, Seen};
 use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;
@@ -17,12 +17,14 @@ use crate::trial::{self, Shapes, Trial};
 use crate::uncertainty::correlated_instants;
 
 /// Limits of a search.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Limits {
     /// Most effects that may be taken.
     pub max_effects: usize,
     /// Catalogue ids that are not considered.
     pub excluded: Vec<String>,
+    /// Effects of a user's own that are considered beside those of the catalogue.
+    pub own: Vec<&'static dyn Effect>,
     /// Excess over the noise floor that matters, in N; none for half of the floor.
     pub matters_above_n: Option<f64>,
     /// What sensor noise alone leaves at the full rate, in N.
@@ -346,7 +348,7 @@ impl Look<'_> {
         let bent = again(&beside, best)?;
         // Other forms that only follow the noise are no better than none.
         let before = if bent.held_out.mean_square() < bare.held_out.mean_square() { &bent } else { &bare };
-        let takes = |id: &str| self.allows(id) && effect(id).is_some_and(wanted);
+        let takes = |effect: &dyn Effect| self.allows(effect.page().id) && wanted(effect);
         let trials = trial::among(&beside, &bent.state, &before.held_out, self.seen, known, &takes);
         Some(trials.into_iter().map(|trial| Tried { trial, before: before.held_out.clone() }).collect())
     }
@@ -363,14 +365,13 @@ impl Look<'_> {
             let mean_square = best.state.fit.mean_square;
             Trial { guess, mean_square, held_out: best.held_out.clone(), log_ratio: 0.0 }
         };
-        CATALOGUE.iter().filter(is_missing).map(nothing).collect()
+        self.plain.effects.iter().filter(is_missing).map(nothing).collect()
     }
 
     /// Smooth static effects on top of `best` without the map that stands for them all.
     fn smooth_statics(&self, best: &Judged) -> Option<Vec<Trial>> {
         let bare = again(self.plain, best)?;
-        let smooth =
-            |id: &str| self.allows(id) && effect(id).is_some_and(|effect| effect.is_static() && !effect.is_local());
+        let smooth = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static() && !effect.is_local();
         Some(trial::among(self.plain, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &smooth))
     }
 
@@ -389,7 +390,7 @@ impl Look<'_> {
         if map < matters.max(form_square(self.limits.sensor_floor_n, high_n - low_n, FORM_SHARE)) {
             return None;
         }
-        let statics = |id: &str| self.allows(id) && effect(id).is_some_and(|effect| effect.is_static());
+        let statics = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static();
         let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &statics);
         let stands = |trial: &&Trial| {
             let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
@@ -597,7 +598,9 @@ fn without(
     promising: &Shapes,
 ) -> Option<(Judged, Vec<Trial>)> {
     let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
-    let rivals = trial::among(setting, &rest.state, &rest.held_out, seen, promising, &|id| promising.contains_key(id));
+    let rivals = trial::among(setting, &rest.state, &rest.held_out, seen, promising, &|effect| {
+        promising.contains_key(effect.page().id)
+    });
     Some((rest, rivals))
 }
 
@@ -622,6 +625,9 @@ fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &Sha
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    use pam_core::effects::effect;
+
     use crate::rehearsal::tests::Given;
 
     const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
@@ -631,6 +637,7 @@ mod tests {
         let limits = Limits {
             max_effects: 3,
             excluded: Vec::new(),
+            own: Vec::new(),
             matters_above_n: None,
             sensor_floor_n: 0.3,
             confirmed: false,

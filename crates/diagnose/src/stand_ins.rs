@@ -117,6 +117,7 @@ mod tests {
         let limits = Limits {
             max_effects: 0,
             excluded: Vec::new(),
+            own: Vec::new(),
             matters_above_n: None,
             sensor_floor_n: 0.1,
             confirmed: false,

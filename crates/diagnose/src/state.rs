@@ -1,6 +1,6 @@
 //! A hypothesis fitted to the track.
 
-use pam_core::effects::{Memory, Role, Term};
+use pam_core::effects::{Effect, Memory, Role, Term};
 use pam_core::force::ForceModel;
 use pam_core::force::columns::ForceColumns;
 use pam_core::muscle::Muscle;
@@ -50,6 +50,8 @@ pub struct Setting<'a> {
     pub floor_square: f64,
     /// Whether further effects are tried on top of its fits.
     pub goes_on: bool,
+    /// Effects that may be named: those of the catalogue, and a user's own.
+    pub effects: &'a [&'static dyn Effect],
 }
 
 /// A hypothesis with its joint fit.

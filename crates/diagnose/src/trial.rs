@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pam_core::effects::{CATALOGUE, Effect, Kind, Seen};
+use pam_core::effects::{Effect, Kind, Seen, Shape};
 use rayon::prelude::*;
 
 use crate::hypothesis::{Guess, n_amplitudes};
@@ -40,16 +40,16 @@ const PRESSED_CHARGE: f64 = 0.7;
 /// effect.
 const DEGENERATE_CHARGE: f64 = 0.2;
 
-/// Whether a shape is at an end of its range, other than at zero.
+/// Whether a shape is at an end of its range that says more than how: zero, and the ends that an effect means, say no more.
 fn is_degenerate(guess: &Guess) -> bool {
-    let mut shapes = guess.effect.shape().iter().zip(&guess.shape);
-    let at_an_end = |(low, high): (f64, f64), value: f64| {
+    let effect = guess.effect;
+    let at_an_end = |(index, (parameter, &value)): (usize, (&Shape, &f64))| {
+        let (low, high) = parameter.range;
         let near = 1e-3 * (high - low);
-        (low != 0.0 && value <= low + near.min(0.05 * low.abs())) || value >= high - near
+        let is_meant = |end: f64| end == 0.0 || effect.may_end(index, end);
+        value <= low + near.min(0.05 * low.abs()) && !is_meant(low) || value >= high - near && !is_meant(high)
     };
-    guess.effect.kind() != Kind::Event
-        && !guess.effect.may_end()
-        && shapes.any(|(parameter, &value)| at_an_end(parameter.range, value))
+    effect.kind() != Kind::Event && effect.shape().iter().zip(&guess.shape).enumerate().any(at_an_end)
 }
 
 /// Share of its evidence that an effect loses for every parameter beyond the first: of two that explain as much, the simpler
@@ -59,7 +59,7 @@ const FREEDOM_CHARGE: f64 = 0.02;
 /// Shapes that were best when a candidate was last looked at, by its id.
 pub type Shapes = BTreeMap<&'static str, Vec<f64>>;
 
-/// Tries every effect of the catalogue that `state` does not have and that `takes` lets through by its id; best first. A
+/// Tries every effect of `setting` that `state` does not have and that `takes` lets through; best first. A
 /// candidate in `known` starts from the shape there, the others from all that the catalogue has for them.
 pub fn among(
     setting: &Setting<'_>,
@@ -67,15 +67,13 @@ pub fn among(
     before: &HeldOut,
     seen: &Seen,
     known: &Shapes,
-    takes: &(dyn Fn(&str) -> bool + Sync),
+    takes: &(dyn Fn(&dyn Effect) -> bool + Sync),
 ) -> Vec<Trial> {
-    let candidates: Vec<&'static dyn Effect> = CATALOGUE
+    let candidates: Vec<&'static dyn Effect> = setting
+        .effects
         .iter()
         .copied()
-        .filter(|effect| {
-            let id = effect.page().id;
-            takes(id) && !state.guesses.iter().any(|guess| guess.id() == id)
-        })
+        .filter(|&effect| takes(effect) && state.guesses.iter().all(|guess| guess.id() != effect.page().id))
         .collect();
     let jobs: Vec<(usize, Guess)> = candidates
         .iter()
@@ -242,4 +240,37 @@ fn step_around(grid: &[f64], range: (f64, f64), value: f64) -> f64 {
         (false, false) => 0.3 * value.abs().max(0.02 * (range.1 - range.0)),
     };
     0.5 * distance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use pam_core::effects::effect;
+
+    fn guess(id: &str, shape: &[f64]) -> Guess {
+        let effect = effect(id).expect("an effect of the catalogue");
+        Guess { effect, shape: shape.to_vec(), sign: crate::hypothesis::Sign::Any, carried: false }
+    }
+
+    #[test]
+    fn a_rigid_mount_and_a_whole_share_are_no_degenerate_shapes() {
+        assert!(!is_degenerate(&guess("inertia", &[200.0])));
+        assert!(is_degenerate(&guess("inertia", &[12.0])));
+        assert!(!is_degenerate(&guess("series-compliance", &[1e-5, 1.0, 0.0])));
+        assert!(is_degenerate(&guess("series-compliance", &[1e-4, 1.0, 0.0])));
+        assert!(is_degenerate(&guess("presliding-hysteresis", &[2e-4, 0.0])));
+    }
+
+    #[test]
+    fn a_creep_that_is_all_of_the_length_is_a_relaxation_instead() {
+        assert!(is_degenerate(&guess("pressure-creep", &[6.0, 1.0])));
+    }
+
+    #[test]
+    fn an_exponent_at_its_end_is_a_form_and_a_speed_at_its_end_is_another_effect() {
+        assert!(!is_degenerate(&guess("stribeck", &[5e-3, 0.5])));
+        assert!(is_degenerate(&guess("stribeck", &[5e-2, 1.0])));
+        assert!(!is_degenerate(&guess("force-drift", &[4e3])));
+    }
 }

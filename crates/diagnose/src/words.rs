@@ -1,6 +1,7 @@
 //! The diagnosis in words.
 
 use pam_core::artifact::diagnosis::{Coordinate, NamedEffect, Region, Verdict};
+use pam_core::effects::effect;
 
 use crate::artifact::together;
 use crate::given::Given;
@@ -31,8 +32,19 @@ impl Numbers {
         if before > 0.0 { (excess(self.after_n) / before).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    fn gain(&self) -> String {
+    /// What the model with `effects` leaves of the mismatch.
+    fn gain(&self, effects: &[NamedEffect]) -> String {
         let map = if self.with_map { " and a smooth static map" } else { "" };
+        if self.after_n > self.before_n {
+            // A fit lets such a memory go on from recording to recording.
+            let outlasts = |named: &NamedEffect| effect(&named.id).is_some_and(|effect| effect.outlasts());
+            let why = if effects.iter().any(outlasts) {
+                ", since a model begins every recording without a memory of the one before"
+            } else {
+                ""
+            };
+            return format!("with that{map} the RMSE rises from {:.2} to {:.2} N{why}", self.before_n, self.after_n);
+        }
         format!(
             "with that{map} the RMSE falls from {:.2} to {:.2} N, {:.0} % of the excess over the noise floor of {:.2} N",
             self.before_n,
@@ -61,7 +73,7 @@ pub(crate) fn statement(
         Verdict::Explained | Verdict::ExplainedInPart => format!(
             "Missing physics: {}; {}. The mismatch lies {}.",
             list(&names),
-            numbers.gain(),
+            numbers.gain(effects),
             regions.first().map_or_else(|| "nowhere in particular".to_owned(), place)
         ),
         Verdict::Ambiguous => {
@@ -74,7 +86,7 @@ pub(crate) fn statement(
                 "Missing physics: {}, but these recordings cannot distinguish {}; {}.",
                 list(&names),
                 others.join(", nor "),
-                numbers.gain()
+                numbers.gain(effects)
             )
         }
         Verdict::Unexplained => {
@@ -88,7 +100,11 @@ pub(crate) fn statement(
                     numbers.before_n, numbers.floor_n
                 )
             } else {
-                format!("Missing physics: {}; {}. Unmodelled structure is left {place}.", list(&names), numbers.gain())
+                format!(
+                    "Missing physics: {}; {}. Unmodelled structure is left {place}.",
+                    list(&names),
+                    numbers.gain(effects)
+                )
             }
         }
     }
@@ -154,4 +170,17 @@ fn rounded(value: f64, span: f64) -> String {
     let decimals = (1.0 - smaller.max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_that_rises_is_not_said_to_fall() {
+        let numbers =
+            |after_n| Numbers { before_n: 2.0, after_n, floor_n: 1.0, matters_n: 1.0, static_n: None, with_map: false };
+        assert!(numbers(1.5).gain(&[]).starts_with("with that the RMSE falls from 2.00 to 1.50 N, 58 % of the excess"));
+        assert_eq!(numbers(2.5).gain(&[]), "with that the RMSE rises from 2.00 to 2.50 N");
+    }
 }

@@ -38,7 +38,7 @@ impl Effect for ForceDrift {
     }
 
     /// It drifts evenly, whatever warms up.
-    fn may_end(&self) -> bool {
+    fn may_end(&self, _index: usize, _end: f64) -> bool {
         true
     }
 

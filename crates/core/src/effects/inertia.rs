@@ -13,6 +13,9 @@ use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
+/// Beyond which a mount is rigid, in Hz.
+const RIGID_HZ: f64 = 200.0;
+
 /// The effect.
 #[derive(Debug)]
 pub(super) struct Inertia;
@@ -32,11 +35,16 @@ impl Effect for Inertia {
 
     fn shape(&self) -> &'static [Shape] {
         // Below, a mount is so soft that its mass looks like damping.
-        &[Shape { name: "mount_hz", unit: "Hz", range: (12.0, 200.0), grid: &[25.0, 200.0] }]
+        &[Shape { name: "mount_hz", unit: "Hz", range: (12.0, RIGID_HZ), grid: &[25.0, RIGID_HZ] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[Amplitude { name: "mass_kg", unit: "kg", range: (-30.0, 30.0) }]
+    }
+
+    /// A rigid mount.
+    fn may_end(&self, _index: usize, end: f64) -> bool {
+        end == RIGID_HZ
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {

@@ -54,6 +54,8 @@ pub use moment::{Base, Moment};
 pub use page::{Page, Symbol};
 pub use sentence::Sentence;
 
+use std::fmt;
+
 use crate::motion::Instant;
 use crate::muscle::Muscle;
 
@@ -191,8 +193,9 @@ pub trait Effect: Sync {
         false
     }
 
-    /// Whether it is itself still where a shape lies at the end of its range.
-    fn may_end(&self) -> bool {
+    /// Whether it is itself still where shape `index` lies at this `end` of its range: an exponent says how, not what, and a mount
+    /// may be rigid.
+    fn may_end(&self, _index: usize, _end: f64) -> bool {
         false
     }
 
@@ -211,8 +214,8 @@ pub trait Effect: Sync {
         false
     }
 
-    /// The sentence that it is, where it is no effect of the catalogue but one that was written in the grammar.
-    fn sentence(&self) -> Option<&Sentence> {
+    /// The sentence that it is with `shape`, where it is no effect of the catalogue but one that was written in the grammar.
+    fn sentence_at(&self, _shape: &[f64]) -> Option<Sentence> {
         None
     }
 
@@ -223,6 +226,13 @@ pub trait Effect: Sync {
 
     /// A memory at the beginning of a recording or a simulation.
     fn start(&self, muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory>;
+}
+
+/// By its id.
+impl fmt::Debug for dyn Effect {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.page().id)
+    }
 }
 
 /// What an effect remembers from moment to moment.

@@ -48,6 +48,11 @@ impl Effect for SeriesCompliance {
         ]
     }
 
+    /// All of the muscle's own motion may slide the braid.
+    fn may_end(&self, index: usize, end: f64) -> bool {
+        index == 1 && end == 1.0
+    }
+
     fn start(&self, muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         let &[compliance_m_per_n, sliding_share, hardening_per_n] = shape else {
             unreachable!("three shape parameters")

@@ -49,6 +49,11 @@ impl Effect for Stribeck {
         &[Amplitude { name: "static_friction", unit: "1", range: (0.0, 0.02) }]
     }
 
+    /// The exponent may.
+    fn may_end(&self, index: usize, _end: f64) -> bool {
+        index == 1
+    }
+
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         Box::new(State { stribeck_speed_m_per_s: shape[0], exponent: shape[1], last: None })
     }

@@ -198,6 +198,7 @@ mod tests {
         let limits = Limits {
             max_effects: 2,
             excluded: vec!["braid-lockup".to_owned(), "end-taper".to_owned()],
+            own: Vec::new(),
             matters_above_n: None,
             sensor_floor_n: 0.3,
             confirmed: false,

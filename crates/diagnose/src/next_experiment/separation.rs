@@ -82,6 +82,7 @@ fn separation(
         nuisance: &crate::nuisance::NONE,
         floor_square: 0.0,
         goes_on: true,
+        effects: setting.effects,
     };
     let runs: Vec<Run> = explanations
         .par_iter()

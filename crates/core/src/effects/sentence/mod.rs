@@ -16,6 +16,7 @@
 //! language evaluates it from the formulas in these four files and the [`Moment`].
 
 mod curve;
+mod custom;
 mod driver;
 mod own;
 mod recall;
@@ -23,6 +24,7 @@ mod scale;
 mod text;
 
 pub use curve::{Curve, MOST_KNOTS};
+pub use custom::{CustomError, custom_effects};
 pub use driver::{Argument, Driver};
 pub use own::{EMPIRICAL, own};
 pub use recall::Recall;

@@ -112,8 +112,8 @@ impl Effect for Own {
         self.sentence.scale.uses_slopes()
     }
 
-    fn sentence(&self) -> Option<&Sentence> {
-        Some(&self.sentence)
+    fn sentence_at(&self, _shape: &[f64]) -> Option<Sentence> {
+        Some(self.sentence.clone())
     }
 
     fn start(&self, _muscle: &Muscle, _shape: &[f64]) -> Box<dyn Memory> {
@@ -121,9 +121,10 @@ impl Effect for Own {
     }
 }
 
-struct State {
-    sentence: Sentence,
-    argument: Argument,
+/// A sentence along a recording.
+pub(super) struct State {
+    pub(super) sentence: Sentence,
+    pub(super) argument: Argument,
 }
 
 impl Memory for State {
