@@ -21,6 +21,7 @@ fn main() {
     let limits = Limits {
         max_effects: 4,
         excluded: Vec::new(),
+        own: Vec::new(),
         matters_above_n: None,
         sensor_floor_n: model.fit.noise_floor_n,
         confirmed: false,
