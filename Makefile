@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
 PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench pam-export pam-fleet pam-compare
 
-.PHONY: all install test check bench compare tables tutorial tutorial-muscle first-hour hard-use odd-inputs mutate fuzz datasets recordings prove prove-worlds prove-real fleet-slurm clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial tutorial-muscle first-hour hard-use odd-inputs mutate fuzz datasets recordings prove prove-worlds prove-real sensitivity fleet-slurm clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -130,6 +130,10 @@ prove-worlds: cargo-is-there
 	@rm -rf $(WORLDS)
 	$(BIN)/worlds --out $(WORLDS) --cases $(CASES) --seed $(SEED) --half $(HALF)
 	$(BIN)/score-worlds $(WORLDS) --bin $(BIN) --json $(WORLDS)/scores.json
+
+# What halving and doubling each constant that decides does to names and false alarms: hours; it goes on where it stopped.
+sensitivity: cargo-is-there
+	scripts/proof/sensitivity --work $(OUT)/sensitivity
 
 # The same question to two real muscles, where their recordings are (make recordings, or PAM_RECORDINGS=folder).
 prove-real: cargo-is-there
