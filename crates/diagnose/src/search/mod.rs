@@ -1,0 +1,297 @@
+//! Which effects, if any: forward one at a time, with a second look at each that was taken.
+//!
+//! [`beside`] is what a hypothesis is judged beside, [`look`] a look at the catalogue, [`worth`] what a trial must gain, [`settle`] how
+//! what was taken settles with what was there.
+
+mod beside;
+mod look;
+mod settle;
+mod worth;
+
+use pam_core::artifact::diagnosis::Coordinate;
+use pam_core::effects::{Effect, Seen};
+
+use crate::coordinates::Coordinates;
+use crate::joint::HeldOut;
+use crate::nuisance::Nuisance;
+use crate::stand_ins;
+use crate::state::{Setting, State};
+use crate::structure::{Feature, Remainder, Structure, features, telling_force_n};
+use crate::trial::{Shapes, Trial};
+
+pub(crate) use beside::fitting;
+use beside::{Beside, kept_map};
+use look::{FORM_AT_MOST, Look, Tried, form_square, is_strained, promise};
+use settle::{at_rest, polished, second_look, settle, without};
+pub use worth::chance;
+use worth::worth;
+
+/// Limits of a search.
+#[derive(Debug, Clone)]
+pub struct Limits {
+    /// Most effects that may be taken.
+    pub max_effects: usize,
+    /// Catalogue ids that are not considered.
+    pub excluded: Vec<String>,
+    /// Effects of a user's own that are considered beside those of the catalogue.
+    pub own: Vec<&'static dyn Effect>,
+    /// Excess over the noise floor that matters, in N; none for half of the floor.
+    pub matters_above_n: Option<f64>,
+    /// What sensor noise alone leaves at the full rate, in N.
+    pub sensor_floor_n: f64,
+    /// Whether held-out recordings will confirm or deny what is named.
+    pub confirmed: bool,
+}
+
+/// A hypothesis with what it leaves.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// The hypothesis, fitted.
+    pub state: State,
+    /// Mean squares over held-out blocks.
+    pub held_out: HeldOut,
+}
+
+/// What a search found.
+#[derive(Debug)]
+pub struct Found {
+    /// The base model alone.
+    pub base: Judged,
+    /// The base model beside a static map.
+    pub whole: Judged,
+    /// Base and effects; the base alone where nothing was taken.
+    pub best: Judged,
+    /// What was taken with, for each, what would be left without it (everything else refitted).
+    pub taken: Vec<Taken>,
+    /// The first look: every candidate alone.
+    pub first: Vec<Trial>,
+    /// Coordinates of every instant.
+    pub coordinates: Coordinates,
+    /// Features over them.
+    pub features: Vec<Feature>,
+    /// What no model, named or not, gets below: mean square over held-out blocks, in N².
+    pub floor_square: f64,
+    /// Structure that is left.
+    pub left: Option<Structure>,
+    /// What was in beside base and effects.
+    pub nuisance: Nuisance,
+    /// What a static map takes up in any muscle at most: mean square, in N².
+    pub form_square: f64,
+    /// Ids of what was taken and let go of again, as more is left than it explains.
+    pub stand_ins: Vec<&'static str>,
+}
+
+impl Found {
+    /// Lets go of effect `index`; `setting` has the nuisances that were in. False where the rest determines no fit.
+    pub(crate) fn let_go(&mut self, setting: &Setting<'_>, index: usize) -> bool {
+        let rest = setting.fit_without(&self.best.state, index).and_then(|state| judged(setting, state));
+        let Some(rest) = rest else { return false };
+        self.best = rest;
+        if index < self.taken.len() {
+            self.taken.remove(index);
+        }
+        let every: Vec<&Feature> = self.features.iter().collect();
+        self.left = Remainder::of(setting, &self.best.state).structure(&every);
+        true
+    }
+}
+
+/// An effect that was taken.
+#[derive(Debug, Clone)]
+pub struct Taken {
+    /// Mean squares over held-out blocks without it.
+    pub without: HeldOut,
+    /// And with it.
+    pub with: HeldOut,
+    /// Other effects in its place, best first.
+    pub rivals: Vec<Trial>,
+}
+
+/// Searches; calls `looked` behind every look at the catalogue. `setting` has no nuisances yet.
+///
+/// Effects with a memory, of rate, time or instruments, are judged beside a free smooth static map, so that no misfit of
+/// eq. 11 can call one up or hide it, and beside other forms of what was named before, so that what is left of an effect is
+/// not taken for another one. Static effects are what parsimony says about that map: one that takes up nearly all that the
+/// map does, with one or two parameters.
+pub fn search(
+    setting: &Setting<'_>,
+    start: &[f64],
+    model: &pam_core::force::ForceModel,
+    limits: &Limits,
+    looked: &dyn Fn(),
+) -> Option<Found> {
+    let track = setting.track;
+    let mut coordinates = Coordinates::of(track);
+    let of_recordings =
+        Nuisance::of_recordings(track, limits.sensor_floor_n).with_reversals(track, &coordinates, model);
+    let bare = setting.beside(&of_recordings);
+    let base = judged(&bare, bare.fit(Vec::new(), start, model)?)?;
+    let mut beside = Beside::of(setting, &of_recordings, &coordinates, &base)?;
+    let mut best = again(&setting.beside(&beside.smooth), &base)?;
+    let (remainder, telling_n) = {
+        let mapped = setting.beside(&beside.smooth);
+        let remainder = Remainder::of(&mapped, &best.state);
+        let telling_n = telling_force_n(&mapped, &best.state, &remainder);
+        (remainder, telling_n)
+    };
+    coordinates.replace(Coordinate::Force, telling_n);
+    let features = features(setting, &coordinates);
+    let seen = Seen::of(track.instants.iter().zip(&track.counted).filter(|(_, counted)| **counted).map(|(at, _)| at));
+    let every: Vec<&Feature> = features.iter().collect();
+    let unnamed = remainder.structure(&every);
+    let mut floor_square = best.held_out.mean_square();
+    if let Some(unnamed) = &unnamed {
+        floor_square = floor_square.min(unnamed.held_out.mean_square());
+    }
+    let whole = best.clone();
+    let mut first = Vec::new();
+    let mut promising = Shapes::new();
+    let mut known = Shapes::new();
+    let mut looks = 0;
+    while best.state.guesses.len() < limits.max_effects {
+        let (plain, mapped) = (setting.beside(&beside.plain), setting.beside(&beside.smooth));
+        let look =
+            Look { plain: &plain, mapped: &mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
+        let tried = look.trials(&best, &known)?;
+        looked();
+        if looks == 0 {
+            first = tried.iter().map(|tried| tried.trial.clone()).collect();
+            first.extend(look.smooth_statics(&best)?);
+            first.extend(look.not_tried(&best, &first));
+        }
+        looks += 1;
+        known = promise(&tried).collect();
+        promising.extend(known.clone());
+        for Tried { trial, before } in &tried {
+            // What a trial gains beside a free map says nothing of what a smooth one leaves.
+            let gained = before.mean_square() - trial.held_out.mean_square();
+            floor_square = floor_square.min((best.held_out.mean_square() - gained).max(trial.held_out.mean_square()));
+        }
+        let next = tried
+            .iter()
+            .filter(|tried| worth(tried, !best.state.guesses.is_empty(), &whole.held_out, floor_square, limits))
+            .filter_map(|chosen| settle(&mapped, &best, &chosen.trial))
+            .find(|next| !is_strained(&mapped, next, &base));
+        let Some(next) = next else { break };
+        beside = Beside::of(setting, &of_recordings, &coordinates, &next)?;
+        let mapped = setting.beside(&beside.smooth);
+        best = again(&mapped, &next)?;
+        if looks > 1 {
+            best = second_look(&mapped, best, &seen, &promising);
+        }
+        floor_square = floor_square.min(best.held_out.mean_square());
+    }
+    let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
+    let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
+    let mut parsimonious = Vec::new();
+    while best.state.guesses.len() < limits.max_effects {
+        let Some(next) = look.static_effect(&best, &base, floor_square) else { break };
+        parsimonious.push(next.state.guesses[next.state.guesses.len() - 1].id());
+        best = next;
+    }
+    let mismatch = whole.held_out.mean_square() - floor_square;
+    if parsimonious.is_empty() {
+        best = stand_ins::without(mapped, best, &features, mismatch, limits.confirmed);
+    }
+    let best = at_rest(mapped, polished(mapped, best)?)?;
+    let mut taken = Vec::new();
+    for index in 0..best.state.guesses.len() {
+        let of_the_map = parsimonious.contains(&best.state.guesses[index].id());
+        let setting = if of_the_map { plain } else { mapped };
+        let found = without(setting, &best, index, &seen, &promising);
+        let Some((without, rivals)) = found else { continue };
+        let with = if of_the_map { again(plain, &best)? } else { best.clone() };
+        taken.push(Taken { without: without.held_out, with: with.held_out, rivals });
+    }
+    let (best, nuisance) = kept_map(plain, best, beside.smooth.clone())?;
+    let mapped = plain.beside(&nuisance);
+    let left = Remainder::of(&mapped, &best.state).structure(&every);
+    if let Some(left) = &left {
+        floor_square = floor_square.min(left.held_out.mean_square());
+    }
+    Some(Found {
+        base,
+        whole,
+        best,
+        taken,
+        first,
+        coordinates,
+        features,
+        floor_square,
+        left,
+        nuisance,
+        form_square: form_square(limits.sensor_floor_n, seen.force_n.1 - seen.force_n.0, FORM_AT_MOST),
+        stand_ins: Vec::new(),
+    })
+}
+
+/// A state with what it leaves of held-out blocks.
+pub(crate) fn judged(setting: &Setting<'_>, state: State) -> Option<Judged> {
+    let held_out = setting.hold_out(&state)?;
+    Some(Judged { state, held_out })
+}
+
+/// The hypothesis of `best` fitted anew in another setting.
+pub(crate) fn again(setting: &Setting<'_>, best: &Judged) -> Option<Judged> {
+    judged(setting, setting.fit_near(best.state.guesses.clone(), &best.state)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hypothesis::Guess;
+
+    use pam_core::effects::effect;
+
+    use crate::rehearsal::tests::Given;
+
+    const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
+
+    /// Names that a search finds in `given`, whose sensors leave 0.3 N.
+    fn names(given: &Given) -> Vec<&'static str> {
+        let limits = Limits {
+            max_effects: 3,
+            excluded: Vec::new(),
+            own: Vec::new(),
+            matters_above_n: None,
+            sensor_floor_n: 0.3,
+            confirmed: false,
+        };
+        let setting = Setting { floor_square: 0.09, ..given.setting() };
+        let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
+        found.best.state.guesses.iter().map(Guess::id).collect()
+    }
+
+    /// Noise that neighbors share, of about 0.2 N.
+    fn disturb(given: &mut Given) {
+        for (at, instant) in given.track.instants.iter_mut().enumerate() {
+            let at = at as f64;
+            instant.force_n += 0.2 * ((0.37 * at).sin() + (0.011 * at).sin());
+        }
+    }
+
+    #[test]
+    fn what_lacks_nothing_gets_no_name() {
+        let mut given = Given::of(&PROTOCOLS, &[]);
+        disturb(&mut given);
+        assert_eq!(names(&given), Vec::<&str>::new());
+    }
+
+    #[test]
+    fn a_lag_is_named_and_nothing_beside_it() {
+        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+        disturb(&mut given);
+        assert_eq!(names(&given), ["pressure-lag"]);
+    }
+
+    #[test]
+    fn a_smooth_misfit_of_the_base_calls_up_no_effect_with_a_memory() {
+        let mut given = Given::of(&PROTOCOLS, &[]);
+        disturb(&mut given);
+        for instant in &mut given.track.instants {
+            let (p, e) = (instant.moment.pressure_pa * 2e-6, instant.moment.contraction_ratio * 5.0);
+            instant.force_n += 6.0 * (2.5 * p + 2.0 * e).sin() * p;
+        }
+        assert!(names(&given).iter().all(|id| effect(id).is_some_and(|effect| effect.is_static())));
+    }
+}

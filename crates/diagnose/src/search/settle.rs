@@ -1,0 +1,159 @@
+//! How what was taken settles with what was there: shapes refined, details confirmed, each looked at once more.
+
+use pam_core::effects::{Kind, Seen};
+
+use super::{Judged, judged};
+use crate::hypothesis::Guess;
+use crate::state::{Setting, State};
+use crate::trial::{self, Shapes, Trial};
+use crate::uncertainty::correlated_instants;
+
+/// Takes a trial: joint fit, shapes of everything refined once more.
+pub(super) fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Option<Judged> {
+    let sampled = setting.sampled();
+    let thin = sampled.fit_near(best.state.guesses.clone(), &best.state)?;
+    let (_, guess) = trial::refine(&sampled, &thin, &chosen.guess, chosen.mean_square, 1);
+    let begun =
+        if guess.carried { setting.begun(setting.nuisance, &best.state, &guess) } else { setting.nuisance.clone() };
+    let setting = &setting.beside(&begun);
+    let sampled = setting.sampled();
+    let mut state = trial::with(&sampled, &thin, &guess)?;
+    if state.guesses.len() > 1 {
+        state = refine_all(&sampled, state)?;
+    }
+    // What effects take of the base follows the new parameters.
+    judged(setting, setting.fit_near(state.guesses.clone(), &state)?)
+}
+
+/// What was taken, its shapes refined on every instant, with such details as held-out blocks confirm.
+pub(super) fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
+    if best.state.guesses.iter().all(|guess| guess.shape.is_empty()) {
+        return Some(best);
+    }
+    let sampled = setting.sampled();
+    let refined = refine_all(&sampled, sampled.fit_near(best.state.guesses.clone(), &best.state)?)?;
+    let plain = judged(setting, setting.fit_near(refined.guesses, &best.state)?)?;
+    let plain = if plain.held_out.mean_square() < best.held_out.mean_square() { plain } else { best };
+    let detailed = detailed(setting, &plain.state).and_then(|state| judged(setting, state));
+    Some(match detailed {
+        Some(detailed) if detailed.held_out.mean_square() < plain.held_out.mean_square() => detailed,
+        _ => plain,
+    })
+}
+
+/// Share of the mean square by which a shape must lower it to differ from zero.
+const WORTH_A_SHAPE: f64 = 0.01;
+
+/// What was taken, with those of its shapes at zero that the data do not tell from it: they have followed the noise, and
+/// other recordings would show it. A length that is held says nothing of its delay.
+pub(super) fn at_rest(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
+    let alike = correlated_instants(setting, &setting.residuals_n(&best.state));
+    let rows = setting.track.n_counted() as f64 / alike;
+    let lowest = best.state.fit.mean_square;
+    let mut rested: Option<State> = None;
+    for index in 0..best.state.guesses.len() {
+        let guess = &best.state.guesses[index];
+        if guess.effect.kind() == Kind::Event {
+            continue;
+        }
+        for (parameter, shape) in guess.effect.shape().iter().enumerate() {
+            if guess.shape[parameter] == 0.0 || !(shape.range.0..=shape.range.1).contains(&0.0) {
+                continue;
+            }
+            let state = rested.as_ref().unwrap_or(&best.state);
+            let mut guesses = state.guesses.clone();
+            guesses[index].shape[parameter] = 0.0;
+            let Some(state) = setting.fit_near(guesses, state) else { continue };
+            // All that rest together.
+            let lost = state.fit.mean_square / lowest - 1.0;
+            if rows * lost < 1.0 || lost < WORTH_A_SHAPE {
+                rested = Some(state);
+            }
+        }
+    }
+    match rested {
+        Some(state) => judged(setting, state),
+        None => Some(best),
+    }
+}
+
+/// Rounds in which details and the other shapes settle with one another.
+const DETAIL_SWEEPS: usize = 10;
+
+/// `state` with the best details of its effects; none where no effect has any.
+fn detailed(setting: &Setting<'_>, state: &State) -> Option<State> {
+    let sampled = setting.sampled();
+    let mut guesses = state.guesses.clone();
+    let mut found = false;
+    for (index, guess) in guesses.iter_mut().enumerate() {
+        let shapes = guess.effect.details(&guess.shape);
+        if shapes.is_empty() {
+            continue;
+        }
+        let rest = sampled.fit_without(state, index)?;
+        let costs = shapes.into_iter().filter_map(|shape| {
+            let guess = Guess { shape, ..guess.clone() };
+            Some((trial::mean_square(&sampled, &rest, &guess)?, guess))
+        });
+        if let Some((_, detailed)) = costs.min_by(|left, right| left.0.total_cmp(&right.0)) {
+            *guess = detailed;
+            found = true;
+        }
+    }
+    if !found {
+        return None;
+    }
+    let mut thin = sampled.fit_near(guesses, state)?;
+    for _ in 0..DETAIL_SWEEPS {
+        thin = refine_all(&sampled, thin)?;
+    }
+    setting.fit_near(thin.guesses, state)
+}
+
+/// Refines the shapes of all effects, each with the others as they are.
+fn refine_all(setting: &Setting<'_>, state: State) -> Option<State> {
+    let mut state = state;
+    for index in 0..state.guesses.len() {
+        let guess = state.guesses[index].clone();
+        let rest = setting.fit_without(&state, index)?;
+        let cost = trial::mean_square(setting, &rest, &guess)?;
+        let (_, guess) = trial::refine(setting, &rest, &guess, cost, 1);
+        let mut guesses = rest.guesses.clone();
+        guesses.insert(index, guess);
+        state = setting.fit_near(guesses, &state)?;
+    }
+    Some(state)
+}
+
+/// `best` without effect `index`, and what else could stand in its place.
+pub(super) fn without(
+    setting: &Setting<'_>,
+    best: &Judged,
+    index: usize,
+    seen: &Seen,
+    promising: &Shapes,
+) -> Option<(Judged, Vec<Trial>)> {
+    let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
+    let rivals = trial::among(setting, &rest.state, &rest.held_out, seen, promising, &|effect| {
+        promising.contains_key(effect.page().id)
+    });
+    Some((rest, rivals))
+}
+
+/// Looks at every effect that was taken once more: another one in its place, or none.
+pub(super) fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &Shapes) -> Judged {
+    let mut best = best;
+    for index in 0..best.state.guesses.len() {
+        let Some((rest, rivals)) = without(setting, &best, index, seen, promising) else { continue };
+        let Some(rival) = rivals.first() else { continue };
+        let own = rest.held_out.log_ratio(&best.held_out);
+        // As good is not better.
+        if rival.log_ratio > own + 0.02 * own.abs() + 0.1
+            && rival.guess.id() != best.state.guesses[index].id()
+            && let Some(next) = settle(setting, &rest, rival)
+        {
+            best = next;
+        }
+    }
+    best
+}
