@@ -2,12 +2,10 @@
 
 use pam_core::artifact::ModelArtifact;
 use pam_core::artifact::diagnosis::{
-    Candidate, Coordinate, DiagnoseConfig, Empirical, EmpiricalTerm, Evidence, Implausible, Isolability, NamedEffect,
-    NextExperiment, Region, Verdict,
+    Candidate, DiagnoseConfig, Empirical, Implausible, Isolability, NamedEffect, NextExperiment, Region, Verdict,
 };
-use pam_core::artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
-use pam_core::effects::sentence::EMPIRICAL;
-use pam_core::effects::{AugmentedModel, Effect, Sentence, Term};
+use pam_core::artifact::model::EffectEntry;
+use pam_core::effects::{AugmentedModel, Effect};
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
 use pam_identification::evaluate::evaluate;
@@ -18,23 +16,20 @@ use crate::discover;
 use crate::error::DiagnoseError;
 use crate::given::Given;
 use crate::isolability::isolability;
-use crate::joint::HeldOut;
 use crate::knocks::{self, Knocks};
 use crate::laws;
+use crate::named::{candidates, map_entry, named, term_entry};
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
-use crate::nuisance::MAP_ID;
 use crate::own;
+use crate::places::{regions, structured, telling};
 use crate::plausible::implausible;
 use crate::question::{Answer, Question};
-use crate::regions::{Place, concentrated};
-use crate::search::{Found, Limits, chance};
+use crate::search::Limits;
 use crate::short;
 use crate::stand_ins;
-use crate::state::{Setting, State};
-use crate::structure::Remainder;
 use crate::track::Track;
-use crate::uncertainty::{Uncertainty, correlated_instants, entries, shape_errors};
-use crate::verdict::{Sizes, alternatives, verdict};
+use crate::uncertainty::{Uncertainty, correlated_instants};
+use crate::verdict::{Sizes, verdict};
 use crate::veto;
 
 /// What to diagnose.
@@ -294,38 +289,6 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     Ok(diagnosis)
 }
 
-/// The static map as a model artifact has it; its terms have no standard errors of their own.
-fn map_entry(map: &Term) -> EffectEntry {
-    let shapes = map.effect.shape().iter().map(|shape| (shape.name, shape.unit));
-    let amplitudes = map.effect.amplitudes().iter().map(|amplitude| (amplitude.name, amplitude.unit));
-    let parameters =
-        shapes.chain(amplitudes).zip(map.shape.iter().chain(&map.amplitudes)).map(|((name, unit), &value)| {
-            let status = ParameterStatus::Fitted;
-            ParameterEntry { name: name.to_owned(), value, unit: unit.to_owned(), stderr: None, status }
-        });
-    EffectEntry { id: MAP_ID.to_owned(), sentence: None, parameters: parameters.collect() }
-}
-
-/// A term without a name as a model artifact has it.
-fn term_entry(term: &EmpiricalTerm) -> EffectEntry {
-    let (id, sentence) = (EMPIRICAL.to_owned(), Some(term.sentence.clone()));
-    EffectEntry { id, sentence, parameters: term.parameters.clone() }
-}
-
-/// The mass behind `knocks`.
-fn knocking(knocks: &Knocks) -> NamedEffect {
-    let page = Knocks::effect().page();
-    NamedEffect {
-        id: page.id.to_owned(),
-        name: page.name.to_owned(),
-        equation: page.equation.to_owned(),
-        parameters: knocks.entries(),
-        evidence: evidence(&knocks.without, &knocks.with, 1),
-        alternatives: Vec::new(),
-        separating_test: page.test.to_owned(),
-    }
-}
-
 /// The base model that leaves less on the recordings at their full rate: as it was identified, if that was on these, or as
 /// refitted on the grid. What effects buy is never measured against the worse one.
 fn better_base(
@@ -338,163 +301,4 @@ fn better_base(
         Ok(evaluate(estimation, model)?.together.map_or(f64::INFINITY, |together| together.rmse_n))
     };
     Ok(if rmse_n(&identified)? <= rmse_n(refitted)? { identified } else { refitted.clone() })
-}
-
-pub(crate) fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
-    let improved = without.log_ratios(with).filter(|&ratio| ratio > 0.0).count();
-    Evidence {
-        log_ratio: without.log_ratio(with),
-        rmse_without_n: without.mean_square().sqrt(),
-        rmse_with_n: with.mean_square().sqrt(),
-        blocks_improved: improved,
-        n_blocks: without.blocks.len(),
-        p_value: (chance(without, with) * looks as f64).min(1.0),
-    }
-}
-
-/// The effects that were taken and the mass behind `knocks`, in order of evidence, and in that in which a model has them;
-/// `correlated` instants of the residual stand for one; `state` is what was found, with terms without a name beside it.
-fn named(
-    setting: &Setting<'_>,
-    found: &Found,
-    state: &State,
-    uncertainty: &Uncertainty,
-    correlated: f64,
-    sentences: &[Option<Sentence>],
-    knocks: Option<&Knocks>,
-) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
-    let (mut named, mut list) = (Vec::new(), Vec::new());
-    let mut first = 0;
-    for (index, guess) in state.guesses.iter().enumerate() {
-        let page = guess.effect.page();
-        let errors = shape_errors(setting, state, index, correlated);
-        let parameters = entries(state, index, first, &errors, uncertainty);
-        first += guess.amplitudes().len();
-        let alternatives = alternatives(found, index);
-        let separating_test = alternatives
-            .iter()
-            .find_map(|id| page.confused_with.iter().find(|confusion| confusion.id == *id))
-            .map_or(page.test, |confusion| confusion.test);
-        let evidence = found.taken.get(index).map_or_else(
-            || evidence(&found.base.held_out, &found.best.held_out, found.first.len()),
-            |taken| evidence(&taken.without, &taken.with, found.first.len()),
-        );
-        let entry = EffectEntry { id: page.id.to_owned(), sentence: None, parameters: parameters.clone() };
-        list.push(own::entry(entry, &sentences[index], guess.shape.len()));
-        named.push(NamedEffect {
-            id: page.id.to_owned(),
-            name: page.name.to_owned(),
-            equation: page.equation.to_owned(),
-            parameters,
-            evidence,
-            alternatives: alternatives.into_iter().map(str::to_owned).collect(),
-            separating_test: separating_test.to_owned(),
-        });
-    }
-    if let Some(knocking) = knocks.map(knocking) {
-        list.push(EffectEntry { id: knocking.id.clone(), sentence: None, parameters: knocking.parameters.clone() });
-        named.push(knocking);
-    }
-    named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
-    (named, list)
-}
-
-/// What became of every candidate of the first look.
-fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
-    let base = found.whole.held_out.mean_square();
-    let mismatch = (base - found.floor_square).max(f64::MIN_POSITIVE);
-    let taken: Vec<&str> = found.best.state.guesses.iter().map(crate::hypothesis::Guess::id).collect();
-    let rivals: Vec<&str> = (0..taken.len()).flat_map(|index| alternatives(found, index)).collect();
-    found
-        .first
-        .iter()
-        .map(|trial| {
-            let id = trial.guess.id();
-            let explains = ((base - trial.held_out.mean_square()) / mismatch).clamp(0.0, 1.0);
-            let outcome = if taken.contains(&id) || (knocks && id == knocks::ID) {
-                "named".to_owned()
-            } else if rivals.contains(&id) {
-                "cannot be distinguished from one named".to_owned()
-            } else if found.stand_ins.contains(&id) {
-                "gains something, and leaves far more than it explains".to_owned()
-            } else if explains < 0.02 {
-                "explains nothing".to_owned()
-            } else if taken.is_empty() {
-                "gains too little to be named".to_owned()
-            } else {
-                "redundant given the selected effects".to_owned()
-            };
-            Candidate {
-                id: id.to_owned(),
-                evidence: evidence(&found.whole.held_out, &trial.held_out, found.first.len()),
-                explains,
-                outcome,
-            }
-        })
-        .collect()
-}
-
-/// Where the mismatch lies: what each effect explains over its own coordinate, then what the residual says by itself.
-fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) -> Vec<Region> {
-    let mut regions: Vec<(f64, Region)> = Vec::new();
-    let state = &found.best.state;
-    let after = setting.residuals_n(state);
-    for (index, guess) in state.guesses.iter().enumerate() {
-        let Some(rest) = setting.fit_without(state, index) else { continue };
-        let before = setting.residuals_n(&rest);
-        let excess: Vec<f64> =
-            before.iter().zip(&after).map(|(before, after)| before * before - after * after).collect();
-        let coordinate = guess.effect.page().coordinate;
-        let (log_ratio, p_value) = found.taken.get(index).map_or((0.0, 1.0), |taken| {
-            (
-                taken.without.log_ratio(&taken.with),
-                (chance(&taken.without, &taken.with) * found.first.len() as f64).min(1.0),
-            )
-        });
-        if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
-            regions.push((log_ratio, place.region));
-        }
-    }
-    regions.sort_by(|left, right| right.0.total_cmp(&left.0));
-    let mut out: Vec<Region> = regions.into_iter().map(|(_, region)| region).collect();
-    let known: Vec<Coordinate> = out.iter().map(|region| region.coordinate).collect();
-    out.extend(telling(structured(setting, &found.whole.state, found, paths), &known));
-    out
-}
-
-/// Those of `places`, the most telling first, over none of the coordinates `known`; what is everywhere only where there is
-/// nothing before it.
-fn telling(places: Vec<Place>, known: &[Coordinate]) -> Vec<Region> {
-    let news = places.into_iter().filter(|place| !known.contains(&place.region.coordinate)).enumerate();
-    news.filter(|(index, place)| !place.is_everywhere || (*index == 0 && known.is_empty()))
-        .map(|(_, place)| place.region)
-        .collect()
-}
-
-/// Coordinates over which the residual of a state is structured, the most telling first.
-fn structured(setting: &Setting<'_>, state: &State, found: &Found, paths: &[String]) -> Vec<Place> {
-    let remainder = Remainder::of(setting, state);
-    let Some(nothing) = remainder.structure(&[]) else { return Vec::new() };
-    let mut places: Vec<(f64, Place)> = Vec::new();
-    for coordinate in Coordinate::ALL {
-        let best = found
-            .features
-            .iter()
-            .filter(|feature| feature.coordinate == coordinate && !feature.plane)
-            .filter_map(|feature| Some((feature, remainder.structure(&[feature])?)))
-            .map(|(feature, structure)| (nothing.held_out.log_ratio(&structure.held_out), feature, structure))
-            .max_by(|left, right| left.0.total_cmp(&right.0));
-        let Some((gain, feature, structure)) = best.filter(|(gain, ..)| *gain > 0.5) else { continue };
-        // Every recording has a time of its own.
-        let structure =
-            if coordinate == Coordinate::Time { None } else { remainder.narrowest(feature) }.unwrap_or(structure);
-        let excess: Vec<f64> = structure.values_n.iter().map(|value| value * value).collect();
-        let looks = found.features.len() as f64;
-        let p_value = (chance(&nothing.held_out, &structure.held_out) * looks).min(1.0);
-        if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
-            places.push((gain, place));
-        }
-    }
-    places.sort_by(|left, right| right.0.total_cmp(&left.0));
-    places.into_iter().map(|(_, place)| place).collect()
 }

@@ -1,0 +1,142 @@
+//! What a diagnosis lists: effects with their evidence, as a report and as a model have them, and what became of the others.
+
+use pam_core::artifact::diagnosis::{Candidate, EmpiricalTerm, Evidence, NamedEffect};
+use pam_core::artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
+use pam_core::effects::sentence::EMPIRICAL;
+use pam_core::effects::{Sentence, Term};
+
+use crate::hypothesis::Guess;
+use crate::joint::HeldOut;
+use crate::knocks::{self, Knocks};
+use crate::nuisance::MAP_ID;
+use crate::own;
+use crate::search::{Found, chance};
+use crate::state::{Setting, State};
+use crate::uncertainty::{Uncertainty, entries, shape_errors};
+use crate::verdict::alternatives;
+
+/// The static map as a model artifact has it; its terms have no standard errors of their own.
+pub(crate) fn map_entry(map: &Term) -> EffectEntry {
+    let shapes = map.effect.shape().iter().map(|shape| (shape.name, shape.unit));
+    let amplitudes = map.effect.amplitudes().iter().map(|amplitude| (amplitude.name, amplitude.unit));
+    let parameters =
+        shapes.chain(amplitudes).zip(map.shape.iter().chain(&map.amplitudes)).map(|((name, unit), &value)| {
+            let status = ParameterStatus::Fitted;
+            ParameterEntry { name: name.to_owned(), value, unit: unit.to_owned(), stderr: None, status }
+        });
+    EffectEntry { id: MAP_ID.to_owned(), sentence: None, parameters: parameters.collect() }
+}
+
+/// A term without a name as a model artifact has it.
+pub(crate) fn term_entry(term: &EmpiricalTerm) -> EffectEntry {
+    let (id, sentence) = (EMPIRICAL.to_owned(), Some(term.sentence.clone()));
+    EffectEntry { id, sentence, parameters: term.parameters.clone() }
+}
+
+/// The mass behind `knocks`.
+fn knocking(knocks: &Knocks) -> NamedEffect {
+    let page = Knocks::effect().page();
+    NamedEffect {
+        id: page.id.to_owned(),
+        name: page.name.to_owned(),
+        equation: page.equation.to_owned(),
+        parameters: knocks.entries(),
+        evidence: evidence(&knocks.without, &knocks.with, 1),
+        alternatives: Vec::new(),
+        separating_test: page.test.to_owned(),
+    }
+}
+
+pub(crate) fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
+    let improved = without.log_ratios(with).filter(|&ratio| ratio > 0.0).count();
+    Evidence {
+        log_ratio: without.log_ratio(with),
+        rmse_without_n: without.mean_square().sqrt(),
+        rmse_with_n: with.mean_square().sqrt(),
+        blocks_improved: improved,
+        n_blocks: without.blocks.len(),
+        p_value: (chance(without, with) * looks as f64).min(1.0),
+    }
+}
+
+/// The effects that were taken and the mass behind `knocks`, in order of evidence, and in that in which a model has them;
+/// `correlated` instants of the residual stand for one; `state` is what was found, with terms without a name beside it.
+pub(crate) fn named(
+    setting: &Setting<'_>,
+    found: &Found,
+    state: &State,
+    uncertainty: &Uncertainty,
+    correlated: f64,
+    sentences: &[Option<Sentence>],
+    knocks: Option<&Knocks>,
+) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
+    let (mut named, mut list) = (Vec::new(), Vec::new());
+    let mut first = 0;
+    for (index, guess) in state.guesses.iter().enumerate() {
+        let page = guess.effect.page();
+        let errors = shape_errors(setting, state, index, correlated);
+        let parameters = entries(state, index, first, &errors, uncertainty);
+        first += guess.amplitudes().len();
+        let alternatives = alternatives(found, index);
+        let separating_test = alternatives
+            .iter()
+            .find_map(|id| page.confused_with.iter().find(|confusion| confusion.id == *id))
+            .map_or(page.test, |confusion| confusion.test);
+        let evidence = found.taken.get(index).map_or_else(
+            || evidence(&found.base.held_out, &found.best.held_out, found.first.len()),
+            |taken| evidence(&taken.without, &taken.with, found.first.len()),
+        );
+        let entry = EffectEntry { id: page.id.to_owned(), sentence: None, parameters: parameters.clone() };
+        list.push(own::entry(entry, &sentences[index], guess.shape.len()));
+        named.push(NamedEffect {
+            id: page.id.to_owned(),
+            name: page.name.to_owned(),
+            equation: page.equation.to_owned(),
+            parameters,
+            evidence,
+            alternatives: alternatives.into_iter().map(str::to_owned).collect(),
+            separating_test: separating_test.to_owned(),
+        });
+    }
+    if let Some(knocking) = knocks.map(knocking) {
+        list.push(EffectEntry { id: knocking.id.clone(), sentence: None, parameters: knocking.parameters.clone() });
+        named.push(knocking);
+    }
+    named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
+    (named, list)
+}
+
+/// What became of every candidate of the first look.
+pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
+    let base = found.whole.held_out.mean_square();
+    let mismatch = (base - found.floor_square).max(f64::MIN_POSITIVE);
+    let taken: Vec<&str> = found.best.state.guesses.iter().map(Guess::id).collect();
+    let rivals: Vec<&str> = (0..taken.len()).flat_map(|index| alternatives(found, index)).collect();
+    found
+        .first
+        .iter()
+        .map(|trial| {
+            let id = trial.guess.id();
+            let explains = ((base - trial.held_out.mean_square()) / mismatch).clamp(0.0, 1.0);
+            let outcome = if taken.contains(&id) || (knocks && id == knocks::ID) {
+                "named".to_owned()
+            } else if rivals.contains(&id) {
+                "cannot be distinguished from one named".to_owned()
+            } else if found.stand_ins.contains(&id) {
+                "gains something, and leaves far more than it explains".to_owned()
+            } else if explains < 0.02 {
+                "explains nothing".to_owned()
+            } else if taken.is_empty() {
+                "gains too little to be named".to_owned()
+            } else {
+                "redundant given the selected effects".to_owned()
+            };
+            Candidate {
+                id: id.to_owned(),
+                evidence: evidence(&found.whole.held_out, &trial.held_out, found.first.len()),
+                explains,
+                outcome,
+            }
+        })
+        .collect()
+}

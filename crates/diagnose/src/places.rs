@@ -1,0 +1,73 @@
+//! Where model and recordings differ, in regions over the coordinates.
+
+use pam_core::artifact::diagnosis::{Coordinate, Region};
+
+use crate::regions::{Place, concentrated};
+use crate::search::{Found, chance};
+use crate::state::{Setting, State};
+use crate::structure::Remainder;
+
+/// Where the mismatch lies: what each effect explains over its own coordinate, then what the residual says by itself.
+pub(crate) fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) -> Vec<Region> {
+    let mut regions: Vec<(f64, Region)> = Vec::new();
+    let state = &found.best.state;
+    let after = setting.residuals_n(state);
+    for (index, guess) in state.guesses.iter().enumerate() {
+        let Some(rest) = setting.fit_without(state, index) else { continue };
+        let before = setting.residuals_n(&rest);
+        let excess: Vec<f64> =
+            before.iter().zip(&after).map(|(before, after)| before * before - after * after).collect();
+        let coordinate = guess.effect.page().coordinate;
+        let (log_ratio, p_value) = found.taken.get(index).map_or((0.0, 1.0), |taken| {
+            (
+                taken.without.log_ratio(&taken.with),
+                (chance(&taken.without, &taken.with) * found.first.len() as f64).min(1.0),
+            )
+        });
+        if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
+            regions.push((log_ratio, place.region));
+        }
+    }
+    regions.sort_by(|left, right| right.0.total_cmp(&left.0));
+    let mut out: Vec<Region> = regions.into_iter().map(|(_, region)| region).collect();
+    let known: Vec<Coordinate> = out.iter().map(|region| region.coordinate).collect();
+    out.extend(telling(structured(setting, &found.whole.state, found, paths), &known));
+    out
+}
+
+/// Those of `places`, the most telling first, over none of the coordinates `known`; what is everywhere only where there is
+/// nothing before it.
+pub(crate) fn telling(places: Vec<Place>, known: &[Coordinate]) -> Vec<Region> {
+    let news = places.into_iter().filter(|place| !known.contains(&place.region.coordinate)).enumerate();
+    news.filter(|(index, place)| !place.is_everywhere || (*index == 0 && known.is_empty()))
+        .map(|(_, place)| place.region)
+        .collect()
+}
+
+/// Coordinates over which the residual of a state is structured, the most telling first.
+pub(crate) fn structured(setting: &Setting<'_>, state: &State, found: &Found, paths: &[String]) -> Vec<Place> {
+    let remainder = Remainder::of(setting, state);
+    let Some(nothing) = remainder.structure(&[]) else { return Vec::new() };
+    let mut places: Vec<(f64, Place)> = Vec::new();
+    for coordinate in Coordinate::ALL {
+        let best = found
+            .features
+            .iter()
+            .filter(|feature| feature.coordinate == coordinate && !feature.plane)
+            .filter_map(|feature| Some((feature, remainder.structure(&[feature])?)))
+            .map(|(feature, structure)| (nothing.held_out.log_ratio(&structure.held_out), feature, structure))
+            .max_by(|left, right| left.0.total_cmp(&right.0));
+        let Some((gain, feature, structure)) = best.filter(|(gain, ..)| *gain > 0.5) else { continue };
+        // Every recording has a time of its own.
+        let structure =
+            if coordinate == Coordinate::Time { None } else { remainder.narrowest(feature) }.unwrap_or(structure);
+        let excess: Vec<f64> = structure.values_n.iter().map(|value| value * value).collect();
+        let looks = found.features.len() as f64;
+        let p_value = (chance(&nothing.held_out, &structure.held_out) * looks).min(1.0);
+        if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
+            places.push((gain, place));
+        }
+    }
+    places.sort_by(|left, right| right.0.total_cmp(&left.0));
+    places.into_iter().map(|(_, place)| place).collect()
+}
