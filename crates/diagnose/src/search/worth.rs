@@ -50,17 +50,7 @@ pub fn chance(without: &HeldOut, with: &HeldOut) -> f64 {
     let mean = ratios.iter().sum::<f64>() / n;
     let variance = ratios.iter().map(|ratio| (ratio - mean).powi(2)).sum::<f64>() / (n - 1.0);
     let t = mean / (variance / n).sqrt().max(1e-12);
-    upper_tail(t)
-}
-
-/// Probability that a standard normal variable exceeds `t` (Abramowitz and Stegun, 7.1.26).
-fn upper_tail(t: f64) -> f64 {
-    let x = t.abs() / std::f64::consts::SQRT_2;
-    let k = 1.0 / (1.0 + 0.327_591_1 * x);
-    let series =
-        k * (0.254_829_592 + k * (-0.284_496_736 + k * (1.421_413_741 + k * (-1.453_152_027 + k * 1.061_405_429))));
-    let half = 0.5 * series * (-x * x).exp();
-    if t >= 0.0 { half } else { 1.0 - half }
+    0.5 * libm::erfc(t / std::f64::consts::SQRT_2)
 }
 
 #[cfg(test)]
