@@ -8,6 +8,8 @@ pub mod diagnosis;
 mod effect_entry;
 mod empirical;
 pub mod estimates;
+mod fit_report;
+mod identify_config;
 pub mod inverse;
 pub mod model;
 pub mod prediction;

@@ -6,8 +6,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use super::effect_entry::EffectEntry;
+pub use super::fit_report::{
+    Domain, FitReport, FitStatistics, ImpliedParameter, RecordingFit, SearchReport, StartReport, UnboundedFit,
+};
+pub use super::identify_config::{
+    Assumed, BladderLaw, FixedParameter, FrictionLaw, IdentifyConfig, Loss, StandstillFit,
+};
 use super::{ArtifactError, Input, InputRole, Tool};
-use crate::direction::{Standstill, Thresholds};
+use crate::direction::Thresholds;
 use crate::effects::{AugmentedModel, Kind};
 use crate::force::{BaseParameters, ForceModel, Form, Parameter};
 use crate::muscle::{Dimension, Muscle};
@@ -68,106 +74,6 @@ pub struct ModelArtifact {
     pub warnings: Vec<String>,
 }
 
-/// Options that a fit was run with.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct IdentifyConfig {
-    /// Particles of each swarm.
-    pub n_particles: usize,
-    /// Most moves of each particle.
-    pub n_iterations: usize,
-    /// Swarms.
-    pub n_starts: usize,
-    /// Whether Levenberg–Marquardt followed the swarm.
-    pub polish: bool,
-    /// Loss: `square` or `huber`.
-    pub loss: Loss,
-    /// Parameters fitted on their own that are otherwise reported as composites.
-    pub freed: Vec<String>,
-    /// Parameters held at a value given by the user.
-    pub fixed: Vec<FixedParameter>,
-    /// `C₀₁ / C₁₀` that their sum is split by.
-    pub bladder_ratio: f64,
-    /// What was assumed of the base; the recordings judged the rest.
-    #[serde(default)]
-    pub assumed: Assumed,
-    /// Whether the user went on where instruments or parameters are implausible; left out where not.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub accept_implausible: bool,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
-fn is_false(value: &bool) -> bool {
-    !value
-}
-
-/// Hypotheses of the base that a user may force.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Assumed {
-    /// Law of the bladder.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bladder: Option<BladderLaw>,
-    /// Law of the friction.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub friction: Option<FrictionLaw>,
-    /// Friction at standstill.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub standstill: Option<Standstill>,
-}
-
-/// How the two coefficients of the bladder are fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum BladderLaw {
-    /// Their sum, shared at a fixed ratio.
-    Shared,
-    /// Each on its own.
-    Free,
-}
-
-/// Which friction of eq. 11 is fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum FrictionLaw {
-    /// That of the bladder (eq. 9).
-    Rubber,
-    /// That between strands (eq. 10).
-    Strands,
-    /// Both.
-    Both,
-}
-
-/// A hypothesis of the base beside another, judged by what the columns of eq. 11 leave.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StandstillFit {
-    /// Friction at standstill.
-    pub standstill: Standstill,
-    /// Root mean square of what is left, in N.
-    pub rmse_n: f64,
-}
-
-/// A parameter held at a value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FixedParameter {
-    /// Name of the parameter.
-    pub name: String,
-    /// Value, in the unit that the artifact writes it in.
-    pub value: f64,
-}
-
-/// What a residual costs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Loss {
-    /// Its square.
-    Square,
-    /// Its square up to 1.345 robust standard deviations, and its absolute value beyond (Huber 1964).
-    Huber,
-}
-
 /// A parameter and what is known of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -223,119 +129,6 @@ pub struct Correlation {
     pub names: Vec<String>,
     /// Square matrix, row by row.
     pub matrix: Vec<Vec<f64>>,
-}
-
-/// Agreement between model and recordings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FitReport {
-    /// All estimation recordings together.
-    pub estimation: FitStatistics,
-    /// All validation recordings together, where there are any.
-    pub validation: Option<FitStatistics>,
-    /// Every recording on its own, in the order of the inputs.
-    pub recordings: Vec<RecordingFit>,
-    /// What the white noise of all three channels leaves of a perfect model on the estimation recordings, root
-    /// mean square, in N.
-    pub noise_floor_n: f64,
-    /// White noise of the force channel alone, in N.
-    pub force_noise_n: f64,
-    /// Independent samples that the estimation recordings are worth.
-    pub effective_samples: f64,
-}
-
-/// One recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RecordingFit {
-    /// Path as given.
-    pub path: String,
-    /// Agreement on it.
-    pub statistics: FitStatistics,
-}
-
-/// Residual, measured less modelled, over the samples whose direction of motion is certain.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FitStatistics {
-    /// Root mean square, in N.
-    pub rmse_n: f64,
-    /// Root mean square with the samples that are left out, in N.
-    pub rmse_all_n: f64,
-    /// Largest absolute value, in N.
-    pub max_n: f64,
-    /// `1 - Σ residual² / Σ (force - mean)²`.
-    pub r2: f64,
-    /// `100 (1 - ‖residual‖ / ‖force - mean‖)`.
-    pub fit_percent: f64,
-    /// Samples counted.
-    pub n_samples: usize,
-    /// Samples that are left out: around reversals, where noise hides the direction, and beyond a sensor's range.
-    pub n_unsettled: usize,
-}
-
-/// What the estimation recordings cover.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Domain {
-    /// Lowest and highest gauge pressure, in Pa.
-    pub pressure_pa: [f64; 2],
-    /// Shortest and longest length, in m.
-    pub length_m: [f64; 2],
-    /// Lowest and highest force, in N.
-    pub force_n: [f64; 2],
-    /// Fastest change of length, in m/s.
-    pub length_rate_m_per_s: f64,
-    /// Fastest change of pressure, in Pa/s.
-    pub pressure_rate_pa_per_s: f64,
-}
-
-/// How the search went.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SearchReport {
-    /// Every swarm, in order of its start.
-    pub starts: Vec<StartReport>,
-    /// Whether the best start converged; a pure swarm never claims to.
-    pub converged: bool,
-    /// Lowest RMSE that the columns allow with free weights, in N.
-    pub column_floor_rmse_n: f64,
-}
-
-/// One swarm and what followed it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StartReport {
-    /// RMSE after the swarm, in N.
-    pub swarm_rmse_n: f64,
-    /// RMSE after the polish, in N.
-    pub polished_rmse_n: Option<f64>,
-}
-
-/// Weights of the same columns without signs or ranges.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct UnboundedFit {
-    /// RMSE on the estimation recordings, in N.
-    pub estimation_rmse_n: f64,
-    /// RMSE on the validation recordings, in N.
-    pub validation_rmse_n: Option<f64>,
-    /// What the weights would mean as parameters.
-    pub implied: Vec<ImpliedParameter>,
-}
-
-/// A parameter that a free weight stands for.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ImpliedParameter {
-    /// Name, or a product of names.
-    pub name: String,
-    /// Value.
-    pub value: f64,
-    /// Unit.
-    pub unit: String,
-    /// Whether a muscle can have it.
-    pub physical: bool,
 }
 
 impl ModelArtifact {
