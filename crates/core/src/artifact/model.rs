@@ -253,6 +253,7 @@ impl ModelArtifact {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::direction::Standstill;
     use crate::muscle::tests::nominal;
 
     fn parameter(name: &str, value: f64, unit: &str) -> ParameterEntry {
