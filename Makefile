@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
 PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench pam-export pam-fleet pam-compare
 
-.PHONY: all install test check bench compare tables tutorial tutorial-muscle first-hour hard-use odd-inputs mutate fuzz datasets recordings prove prove-worlds prove-real sensitivity fleet-slurm clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial tutorial-muscle first-hour hard-use odd-inputs mutate short-recordings fuzz datasets recordings prove prove-worlds prove-real sensitivity fleet-slurm clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -88,7 +88,7 @@ hard-use: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/hard-use --bin $(BIN)
 
-# Nine hundred inputs, each a little wrong: exit code, message and files of every one.
+# Eleven hundred inputs, each a little wrong: exit code, message and files of every one.
 odd-inputs: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/odd-inputs --bin $(BIN)
@@ -97,6 +97,12 @@ odd-inputs: cargo-is-there
 mutate: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/mutate --bin $(BIN)
+
+# Clean recordings of 3 s to 10 min, 1 Hz to 20 kHz, 8 to 16 bits: whatever is named there is false. DRAWS recordings.
+DRAWS ?= 400
+short-recordings: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	@scripts/short-recordings --bin $(BIN) --cases $(DRAWS)
 
 # Broken input for every reader: SECONDS for each, one after another.
 SECONDS ?= 60

@@ -21,8 +21,8 @@ fn statement(artifact: &ComparisonArtifact) -> String {
     let errors = format!("RMSE {} N with A, {} N with B", significant(rmse_a_n, 3), significant(rmse_b_n, 3));
     let (Some([low_n, high_n]), Some(p)) = (interval_n, p_value) else {
         return format!(
-            "Too short to judge: {errors}; {n_blocks} blocks of {} s, longer than the autocorrelation, are fewer than the \
-             {FEWEST_BLOCKS} that a judgment needs: record for longer.",
+            "Too short to judge: {errors}; their errors make {n_blocks} independent blocks of up to {} s, and a judgment needs \
+             {FEWEST_BLOCKS}: record for longer.",
             significant(block_s, 2)
         );
     };

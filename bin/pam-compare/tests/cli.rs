@@ -142,6 +142,11 @@ fn bad_input_gets_one_line_and_no_file() {
     for (arguments, expected) in [
         ("a.json a.json log.csv", "error: a.json and a.json are the same model; name two to compare"),
         ("a.json b.json log.csv log.csv", "error: log.csv: is named twice; name each recording once"),
+        (
+            "a.json b.json log.csv ./log.csv",
+            "error: ./log.csv: has the same samples as log.csv, which is held out as well; leave one of them out",
+        ),
+        ("log.csv b.json log.csv", "error: log.csv:1:2: this is no JSON; expected a pam-model/1 artifact"),
         ("a.json log.csv log.csv", "error: log.csv:1:"),
         ("a.json c.json log.csv", "error: cannot read c.json: no such file"),
         (

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
 use pam_cli::{Console, Output, Verdict, ensure_inverse_of, publish};
+use pam_core::artifact::model::Domain;
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact};
 use pam_core::effects::{AugmentedModel, Kind, Role};
 use pam_core::recording::ReadOptions;
@@ -34,6 +35,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         None => None,
     };
     let export = Export { model: wanted(args, &artifact, &console), artifact, inverse, origin };
+    ensure_force(&export.model, &export.artifact.domain).with_context(|| known.path.clone())?;
     let along = args.log.as_deref().map(|log| export.along(args, log, &console)).transpose()?;
     if args.run.check {
         console.note("inputs are fine (--check)");
@@ -41,6 +43,27 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     }
     publish(outputs.filled(&export, along.as_deref(), &console).with_context(|| known.path.clone())?, &console)?;
     Ok(Verdict::Accepted)
+}
+
+/// More than any muscle pulls, in N.
+const BEYOND_MUSCLES_N: f64 = 1e6;
+/// Pressures, and lengths, of the operating range that the force is looked at.
+const LOOKS: u32 = 5;
+
+/// Refuses a model that no muscle has: what drives a rig must not begin with it.
+fn ensure_force(model: &AugmentedModel, domain: &Domain) -> anyhow::Result<()> {
+    let between = |[low, high]: [f64; 2], look: u32| low + (high - low) * f64::from(look) / f64::from(LOOKS - 1);
+    for (pressure, length) in (0..LOOKS).flat_map(|pressure| (0..LOOKS).map(move |length| (pressure, length))) {
+        let (pressure_pa, length_m) = (between(domain.pressure_pa, pressure), between(domain.length_m, length));
+        let force_n = model.settled_force_n(pressure_pa, length_m, 1.0);
+        ensure!(
+            force_n.is_nan() || force_n.abs() < BEYOND_MUSCLES_N,
+            "the modelled force is {force_n:.1e} N at {:.1} kPa and {:.1} mm, which no muscle has; identify the model anew",
+            1e-3 * pressure_pa,
+            1e3 * length_m
+        );
+    }
+    Ok(())
 }
 
 /// A line for the top of a file; a line break in a path would end its comment.

@@ -25,6 +25,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let rows = read_table(&args.table, args.muscle.as_deref())?;
     let plan = FleetPlan::new(tool, &args.table, &rows)?;
     drop(rows);
+    let apart = |out: Option<Output>| out.map(|out| out.apart_from(named_in(&plan))).transpose();
+    let (plan_out, sheet_out, page_out) = (apart(plan_out)?, apart(sheet_out)?, apart(page_out)?);
     if args.run.check {
         console.note(format!("{}: {} campaigns", args.table.display(), plan.campaigns.len()));
         return Ok(Verdict::Accepted);
@@ -55,6 +57,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     }
     pam_cli::publish(outputs, &console)?;
     Ok(verdict)
+}
+
+/// Recordings and muscle files that a plan names.
+fn named_in(plan: &FleetPlan) -> impl Iterator<Item = &str> {
+    plan.campaigns.iter().flat_map(|campaign| {
+        let files = campaign.estimation.iter().chain(&campaign.holdout).chain(std::iter::once(&campaign.dimensions));
+        files.map(String::as_str)
+    })
 }
 
 fn survey(plan: FleetPlan, results: &std::path::Path, console: &Console) -> Survey {

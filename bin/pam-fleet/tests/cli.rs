@@ -177,4 +177,19 @@ fn what_cannot_be_right_is_one_line() {
     assert!(fleet.refusal("table.csv --muscle m.toml").contains("--results"), "what is missing is named");
     let own = fleet.refusal("table.csv --muscle m.toml --plan table.csv");
     assert!(own.contains("table.csv"), "{own}");
+    // Nor does it write over what the table names, or take it for two.
+    fleet.write("m00/a.csv", "time_s\n0\n");
+    fleet.write("m.toml", "rest_length_mm = 267.0\n");
+    for out in ["m00/a.csv", "m.toml"] {
+        let own = fleet.refusal(&format!("table.csv --muscle m.toml --plan {out}"));
+        assert_eq!(
+            own,
+            format!("error: cannot write {out}: it is also an input, which the run would destroy; name another")
+        );
+    }
+    fleet.write("twice.csv", &format!("{}./m00/a.csv,m00,r0,2026-03-01,holdout\n", fleet.read("table.csv")));
+    assert_eq!(
+        fleet.refusal("twice.csv --muscle m.toml --plan plan.json"),
+        "error: twice.csv:14:1: the same recording stands in line 2; keep one of the two"
+    );
 }

@@ -9,7 +9,7 @@ use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
 use pam_core::recording::Recording;
-use pam_identification::faults::{disagree, spikes, twice, zero};
+use pam_identification::faults::{disagree, reading, spikes, twice, zero};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
@@ -96,6 +96,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     // Instruments are suspected where a fit ends at no muscle; what they explain is searched for then.
     if implausible(&found).is_some() {
         artifact.warnings.extend(zero::explain(&found)?);
+    }
+
+    let of_held_out = artifact.fit.recordings.len().saturating_sub(found.validation.len());
+    let model = artifact.augmented_model();
+    for (index, prepared) in found.validation.iter().enumerate() {
+        let rmse_n = artifact.fit.recordings[of_held_out + index].statistics.rmse_n;
+        artifact.warnings.extend(reading::missed(prepared, &artifact, &model, rmse_n)?);
     }
 
     console.text(tables::parameters(&artifact));

@@ -9,7 +9,7 @@ use pam_core::artifact::{Input, InputRole, ModelArtifact, readable_json};
 use pam_core::effects::{AugmentedModel, Kind};
 use pam_core::recording::ReadOptions;
 use pam_identification::band::PredictiveBand;
-use pam_identification::evaluate::{NoForceAt, evaluate_augmented, noise_floor_n, trace_augmented, without_force};
+use pam_identification::evaluate::{NoForceAt, evaluate_augmented, noise_floor_n, without_force};
 use pam_identification::faults::{reading, spikes};
 use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare, prepare_plausible};
 use pam_identification::prediction::{Prediction, predict};
@@ -113,7 +113,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         statistics.rmse_all_n,
         statistics.n_samples + statistics.n_unsettled
     ));
-    if let Some(words) = missed(&prepared, &artifact, &model, statistics.rmse_n)? {
+    if let Some(words) = reading::missed(&prepared, &artifact, &model, statistics.rmse_n)? {
         console.warn(words);
     }
     above.iter().for_each(|words| console.warn(words));
@@ -146,30 +146,6 @@ fn followed(
 ) -> anyhow::Result<Prediction> {
     let band = PredictiveBand::of(artifact).map_err(|error| anyhow!("{}: {error}", path.display()))?;
     Ok(predict(prepared, model, artifact, &band, FIGURE_SAMPLES)?)
-}
-
-/// What to say of a recording that the model misses by `rmse_n`; nothing where it follows it as it followed its own.
-fn missed(
-    prepared: &Prepared,
-    artifact: &ModelArtifact,
-    model: &AugmentedModel,
-    rmse_n: f64,
-) -> anyhow::Result<Option<String>> {
-    let floor_n = noise_floor_n(std::slice::from_ref(prepared), model.base())?;
-    // A worse sensor is no other muscle.
-    if !reading::is_missed(artifact, rmse_n, floor_n) {
-        return Ok(None);
-    }
-    let own_n = reading::own_n(artifact).max(floor_n);
-    let trace = trace_augmented(prepared, model, artifact.direction, 0)?;
-    let reason = match reading::said(&reading::explain(&[trace], model.base(), own_n)) {
-        Some(instrument) => format!("{instrument}, or it is of another muscle"),
-        None => "it is of another muscle, or of more physics than the model has: pam-diagnose tells".to_owned(),
-    };
-    Ok(Some(format!(
-        "{}: the model misses this recording by {rmse_n:.2} N, and those that it was identified on by {:.2} N: {reason}",
-        prepared.recording.path, artifact.fit.estimation.rmse_n
-    )))
 }
 
 /// The model with all its effects but events, which belong to the recordings that it was diagnosed on.

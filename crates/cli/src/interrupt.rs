@@ -55,21 +55,22 @@ fn end() {
     std::process::exit(130);
 }
 
-/// The same for Ctrl-\\; and a file that grows beyond what the system allows becomes an error of the write instead of a
-/// signal that ends the program on the spot.
+/// The same for Ctrl-\\, a spent share of the processor and what schedulers and timers send; and a file that grows beyond what the
+/// system allows becomes an error of the write instead of a signal that ends the program on the spot.
 ///
-/// Both signals are kept from every thread (those to come inherit it), and one thread waits for the first.
+/// All are kept from every thread (those to come inherit it), and one thread waits for the first.
 #[cfg(unix)]
 fn end_on_quit() {
     use nix::sys::signal::{SigSet, Signal};
-    let mut kept = SigSet::empty();
-    kept.add(Signal::SIGQUIT);
+    let mut awaited = SigSet::empty();
+    for signal in [Signal::SIGQUIT, Signal::SIGXCPU, Signal::SIGALRM, Signal::SIGUSR1, Signal::SIGUSR2] {
+        awaited.add(signal);
+    }
+    let mut kept = awaited;
     kept.add(Signal::SIGXFSZ);
     if kept.thread_block().is_err() {
         return;
     }
-    let mut awaited = SigSet::empty();
-    awaited.add(Signal::SIGQUIT);
     let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
         if awaited.wait().is_ok() {
             end();

@@ -79,6 +79,11 @@ impl Summed {
         self.a.len() - 1
     }
 
+    /// Samples that count as one independent block.
+    fn independent(&self) -> usize {
+        if self.n_blocks > 1 { self.block } else { self.n() }
+    }
+
     /// Sums over a resample.
     fn draw(&self, generator: &mut Pcg64) -> [f64; 2] {
         let mut sums = [0.0; 2];
@@ -137,7 +142,7 @@ pub fn difference(recordings: &[Errors], resampling: Resampling) -> Difference {
     let difference_n = rmse_b_n - rmse_a_n;
     let n_blocks: usize = summed.iter().map(|summed| summed.n_blocks).sum();
     let lengths = recordings.iter().filter(|errors| !errors.a_n.is_empty()).zip(&summed);
-    let block_s = lengths.map(|(errors, summed)| errors.period_s * summed.block as f64).fold(0.0, f64::max);
+    let block_s = lengths.map(|(errors, summed)| errors.period_s * summed.independent() as f64).fold(0.0, f64::max);
     let untold =
         Difference { n_samples, rmse_a_n, rmse_b_n, difference_n, interval_n: None, p_value: None, n_blocks, block_s };
     if n_blocks < FEWEST_BLOCKS {
@@ -222,6 +227,14 @@ mod tests {
         // √1.25 against √1.5 N.
         assert!(low < -0.107 && -0.107 < high + 0.05, "{found:?}");
         assert_eq!(found, difference(&[errors(0.9, 7, 0.5), errors(0.9, 8, 0.5)], RESAMPLING));
+    }
+
+    #[test]
+    fn a_recording_whose_errors_stay_alike_is_one_block_as_long_as_it_lasts() {
+        // A drift from end to end: the autocorrelation reaches as far.
+        let a_n: Vec<f64> = (0..4000).map(|index| 0.01 * f64::from(index)).collect();
+        let found = difference(&[Errors { b_n: vec![0.0; a_n.len()], a_n, period_s: 0.01 }], RESAMPLING);
+        assert_eq!((found.n_blocks, found.block_s, found.p_value), (1, 40.0, None));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use pam_core::effects::AugmentedModel;
 use pam_core::recording::Recording;
 use pam_identification::error::IdentifyError;
 use pam_identification::evaluate::{NoForceAt, without_force};
+use pam_identification::faults;
 use pam_identification::predict::{prepare, prepare_plausible, walk_augmented};
 
 use crate::blocks::{Errors, Resampling, difference};
@@ -35,13 +36,15 @@ struct Walked {
 /// `accept_implausible`.
 ///
 /// # Errors
-/// As [`prepare_plausible`], and [`IdentifyError::WithoutForce`] where a model has no force for a sample.
+/// As [`prepare_plausible`], [`IdentifyError::HeldOutTwice`] where recordings share samples, which would count twice, and
+/// [`IdentifyError::WithoutForce`] where a model has no force for a sample.
 pub fn compare(
     models: [&ModelArtifact; 2],
     recordings: &[Recording],
     accept_implausible: bool,
     resampling: Resampling,
 ) -> Result<Compared, IdentifyError> {
+    faults::twice::check(&[], recordings)?;
     let (mut counted, mut all, mut compared) = (Vec::new(), Vec::new(), Vec::new());
     for recording in recordings {
         let [a, b] = models.map(|model| walked(model, recording.clone(), accept_implausible));

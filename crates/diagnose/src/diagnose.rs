@@ -8,7 +8,7 @@ use pam_core::artifact::model::EffectEntry;
 use pam_core::effects::{AugmentedModel, Effect};
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
-use pam_identification::evaluate::evaluate;
+use pam_identification::evaluate::{evaluate, noise_floor_n};
 use pam_identification::prepare::{Prepared, redirect};
 
 use crate::check;
@@ -117,8 +117,8 @@ pub fn check(request: Request) -> Result<(), DiagnoseError> {
     let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
     let track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
-    given(&Question::new(&estimation, &model, limits(&config, effects, &model, false)), &holdout, accept_implausible)
-        .map(|_| ())
+    let limits = limits(&config, effects, &model, &estimation, false)?;
+    given(&Question::new(&estimation, &model, limits), &holdout, accept_implausible).map(|_| ())
 }
 
 /// The model as given; recordings of clearly another muscle are refused unless they are to be accepted.
@@ -130,15 +130,22 @@ fn given(question: &Question<'_>, holdout: &[Prepared], accept_implausible: bool
     Ok(given)
 }
 
-fn limits(config: &DiagnoseConfig, own: Vec<&'static dyn Effect>, model: &ModelArtifact, confirmed: bool) -> Limits {
-    Limits {
+/// The floor is that of the sensors that made `estimation`, which need not be those that the model was identified with.
+fn limits(
+    config: &DiagnoseConfig,
+    own: Vec<&'static dyn Effect>,
+    model: &ModelArtifact,
+    estimation: &[Prepared],
+    confirmed: bool,
+) -> Result<Limits, DiagnoseError> {
+    Ok(Limits {
         max_effects: config.max_effects,
         excluded: config.excluded.clone(),
         own,
         matters_above_n: config.matters_above_n,
-        sensor_floor_n: model.fit.noise_floor_n,
+        sensor_floor_n: noise_floor_n(estimation, &model.force_model())?,
         confirmed,
-    }
+    })
 }
 
 /// Diagnoses.
@@ -158,7 +165,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (mut estimation, mut holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
     let mut track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
-    let limits = limits(&config, own, &model, !holdout.is_empty());
+    let limits = limits(&config, own, &model, &estimation, !holdout.is_empty())?;
     let mut given = given(&Question::new(&estimation, &model, limits.clone()), &holdout, accept_implausible)?;
     // Reading the channels, each look, and what is said of the outcome; a search may end early.
     let (steps, done) = (config.max_effects as u64 + 3, std::cell::Cell::new(1));
@@ -204,7 +211,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         sizes = stand_ins::let_go(&setting, &mut found, &sizes, &question.limits, left_over);
     }
     let lasts_s = estimation.iter().map(|prepared| prepared.quality.duration_s).sum();
-    let too_short = short::let_go(&setting, &mut found, lasts_s);
+    let too_short = short::let_go(&setting, &mut found, &question.limits, lasts_s);
     if !too_short.is_empty() && knocks.is_none() {
         sizes = Sizes::of(&found, &question.limits);
     }

@@ -1,16 +1,21 @@
 //! Names that recordings are too short for.
 //!
+//! A name needs blocks that were left out of the fit and are foretold better with it. Where only one or two of them are, or as many
+//! foretold worse, that is chance, and only held-out recordings could say more.
+//!
 //! A memory with time constant `τ` bends away from a straight line by about `t / 8 τ` of what it does within `t`. Where every branch
 //! with any weight is so slow that the recordings together see a straight line, they tell a drift, and not what makes it.
 
-use pam_core::effects::Term;
+use pam_core::effects::{Kind, Term};
 
-use crate::search::Found;
+use crate::search::{Found, Limits, Taken, chance};
 use crate::state::Setting;
 
 /// Share of the shortest time constant that recordings must last: within it an exponential leaves its chord by 4 %. The false name
 /// that this was found by, 1,420 s of memory in 17 s, had 1 %.
 const LEAST_OF_MEMORY: f64 = 1.0 / 3.0;
+/// Probability, corrected for the number of candidates, beyond which an improvement may be chance.
+const CHANCE: f64 = 0.05;
 /// From one branch of a memory to the next.
 const SPREAD: f64 = 10.0;
 
@@ -27,8 +32,13 @@ fn shortest_s(term: &Term) -> Option<f64> {
     Some(term.shape[at] * SPREAD.powi(first as i32))
 }
 
+/// Whether blocks that were left out of the fit tell so little of an effect that one of so many `looks` had to be as good.
+fn may_be_chance(taken: &Taken, looks: f64) -> bool {
+    looks * chance(&taken.without, &taken.with) > CHANCE
+}
+
 /// Lets go of names that recordings of `lasts_s` in all do not tell; what to say of each.
-pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found, lasts_s: f64) -> Vec<String> {
+pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found, limits: &Limits, lasts_s: f64) -> Vec<String> {
     let mut said = Vec::new();
     let terms = found.best.state.terms();
     for (index, term) in terms.iter().enumerate().rev() {
@@ -42,6 +52,19 @@ pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found, lasts_s: f64) -> 
             ));
         }
     }
+    let looks = found.first.len() as f64;
+    for index in (0..found.taken.len()).rev() {
+        let effect = found.best.state.guesses[index].effect;
+        // An event touches no more blocks than it lasts for.
+        let is_open = !limits.confirmed && effect.kind() != Kind::Event;
+        if is_open && may_be_chance(&found.taken[index], looks) && found.let_go(setting, index) {
+            let name = effect.page().name;
+            said.push(format!(
+                "{name} would explain something, but too few stretches of these {lasts_s:.0} s show it: record for longer, or hold a \
+                 recording out"
+            ));
+        }
+    }
     said
 }
 
@@ -50,6 +73,19 @@ mod tests {
     use super::*;
 
     use pam_core::effects::effect;
+
+    use crate::joint::HeldOut;
+
+    #[test]
+    fn what_two_blocks_tell_may_be_chance_and_what_most_tell_is_none() {
+        let held = |blocks: Vec<f64>| HeldOut { counts: vec![40.0; blocks.len()], blocks, floor_square: 0.3 };
+        let taken = |touched: usize| {
+            let without = (0..32).map(|block| if block < touched { 4.0 + 0.1 * f64::from(block as u8) } else { 0.1 });
+            Taken { without: held(without.collect()), with: held(vec![0.1; 32]), rivals: Vec::new() }
+        };
+        assert!(may_be_chance(&taken(1), 25.0) && may_be_chance(&taken(2), 25.0));
+        assert!(!may_be_chance(&taken(12), 25.0) && !may_be_chance(&taken(32), 25.0));
+    }
 
     #[test]
     fn the_memory_of_an_effect_is_the_shortest_that_has_a_weight() {

@@ -16,10 +16,6 @@ use crate::simulation::{Deviation, Simulation};
 
 /// Instants at which the reference is looked at.
 const INSTANTS: u32 = 200;
-/// The same in search of what would fit, where the force of a diagnosed model may take a millisecond.
-const SCREENED: u32 = 20;
-/// Steps of the length from one that is screened to the next, in search of a band that is worth a closer look.
-const COARSE: usize = 8;
 /// More than any muscle pulls, in N.
 const BEYOND_MUSCLES_N: f64 = 1e6;
 /// Share of `limits.diverged_rad` by which a bare arm may be lifted: it swings as far again.
@@ -51,7 +47,7 @@ pub struct Reach {
 /// # Errors
 /// [`ReachError`] at the first instant where the force is out of reach.
 pub fn check_reach(simulation: &Simulation<'_>, domain: &Domain) -> Result<Reach, ReachError> {
-    let reach = find_reach(simulation, INSTANTS).map_err(|(length_m, what)| {
+    let reach = find_reach(simulation).map_err(|(length_m, what)| {
         let [shortest_m, longest_m] = domain.length_m;
         let recorded_mm =
             (length_m < shortest_m || length_m > longest_m).then_some([1e3 * shortest_m, 1e3 * longest_m]);
@@ -78,15 +74,8 @@ fn fitting_length_m(simulation: &Simulation<'_>, domain: &Domain) -> Option<f64>
     let with_length = |length_m: f64| LiftPlan { mounted_length_m: Some(length_m), ..simulation.plan.clone() };
     let lengths_m: Vec<f64> =
         (steps(LENGTHS[0])..=steps(LENGTHS[1])).map(|step| f64::from(step) * LENGTH_STEP_M).collect();
-    let reach = |length_m: f64, n| find_reach(&Simulation { plan: &with_length(length_m), ..*simulation }, n).ok();
-    // A band that falls between two coarse steps is too narrow to mount a muscle by.
-    let worthwhile: Vec<bool> = lengths_m.iter().step_by(COARSE).map(|&at_m| reach(at_m, SCREENED).is_some()).collect();
-    let near = |index: usize| worthwhile[index / COARSE] || worthwhile.get(index / COARSE + 1) == Some(&true);
-    let reaches: Vec<Option<Reach>> = lengths_m
-        .iter()
-        .enumerate()
-        .map(|(index, &length_m)| near(index).then(|| reach(length_m, SCREENED)).flatten())
-        .collect();
+    let reach = |length_m: &f64| find_reach(&Simulation { plan: &with_length(*length_m), ..*simulation }).ok();
+    let reaches: Vec<Option<Reach>> = lengths_m.iter().map(reach).collect();
     let recorded = |reach: &Reach| {
         reach.length_m[0] >= domain.length_m[0] - LENGTH_STEP_M
             && reach.length_m[1] <= domain.length_m[1] + LENGTH_STEP_M
@@ -101,7 +90,7 @@ fn fitting_length_m(simulation: &Simulation<'_>, domain: &Domain) -> Option<f64>
     let mut index = 0;
     for attempt in 0..MOST_LIFTS {
         let &(_, length_m) = fitting.get(index)?;
-        if reach(length_m, INSTANTS).is_some() && goes_well(simulation, &with_length(length_m)) {
+        if goes_well(simulation, &with_length(length_m)) {
             return Some(length_m);
         }
         index += 1 << attempt.min(5);
@@ -119,7 +108,7 @@ fn fitting_mass_kg(simulation: &Simulation<'_>) -> Option<f64> {
         let share = lighter.load.mass_kg / plan.load.mass_kg;
         lighter.load.inertia_kg_m2 *= share;
         lighter.true_mass_kg *= share;
-        let reached = share > 0.0 && is_in_reach(&Simulation { plan: &lighter, ..*simulation });
+        let reached = share > 0.0 && find_reach(&Simulation { plan: &lighter, ..*simulation }).is_ok();
         (reached && goes_well(simulation, &lighter)).then_some(lighter.load.mass_kg)
     })
 }
@@ -134,7 +123,7 @@ fn fitting_rise_rad(simulation: &Simulation<'_>) -> Option<f64> {
         let to_rad = plan.reference.from_rad + 0.05 * f64::from(twentieths) * rise_rad;
         smaller.reference.to_rad = (100.0 * to_rad).round() / 100.0;
         let is_rise = (smaller.reference.to_rad - plan.reference.from_rad) * rise_rad > 0.0;
-        let reached = is_rise && is_in_reach(&Simulation { plan: &smaller, ..*simulation });
+        let reached = is_rise && find_reach(&Simulation { plan: &smaller, ..*simulation }).is_ok();
         (reached && goes_well(simulation, &smaller)).then_some(smaller.reference.to_rad)
     })
 }
@@ -154,7 +143,7 @@ fn pressures_pa(simulation: &Simulation<'_>) -> [f64; 2] {
     let [lowest_pa, highest_pa] = simulation.plan.control.pressure_limits_pa;
     let inverse = ExactInverse::new(simulation.model.clone(), lowest_pa, highest_pa);
     let mut range_pa = [f64::INFINITY, f64::NEG_INFINITY];
-    let visited = along_reference(simulation, INSTANTS, &mut |at, length_m, needed_n| {
+    let visited = along_reference(simulation, &mut |at, length_m, needed_n| {
         let pressure_pa = inverse.pressure_pa(needed_n, length_m, direction(at)).pressure_pa;
         range_pa = [range_pa[0].min(pressure_pa), range_pa[1].max(pressure_pa)];
     });
@@ -162,25 +151,19 @@ fn pressures_pa(simulation: &Simulation<'_>) -> [f64; 2] {
     range_pa
 }
 
-/// Whether the muscle can follow the whole reference; most that cannot are told by a few instants.
-fn is_in_reach(simulation: &Simulation<'_>) -> bool {
-    find_reach(simulation, SCREENED).is_ok() && find_reach(simulation, INSTANTS).is_ok()
-}
-
 /// The lengths of the reach, or the length and the reason where it ends. Pressures, which take most of the time, are left to
 /// [`pressures_pa`]: a search asks for some hundred reaches.
-fn find_reach(simulation: &Simulation<'_>, n_instants: u32) -> Result<Reach, (f64, OutOfReach)> {
+fn find_reach(simulation: &Simulation<'_>) -> Result<Reach, (f64, OutOfReach)> {
     let mut reach = Reach { length_m: [f64::INFINITY, 0.0], pressure_pa: [f64::INFINITY, f64::NEG_INFINITY] };
-    along_reference(simulation, n_instants, &mut |_, length_m, _| {
+    along_reference(simulation, &mut |_, length_m, _| {
         reach.length_m = [reach.length_m[0].min(length_m), reach.length_m[1].max(length_m)];
     })?;
     Ok(reach)
 }
 
-/// Walks along the reference, in steps, with the arm as told and as it is: instant, length and force that is needed there.
+/// Walks along the reference with the arm as told and as it is: instant, length and force that is needed there.
 fn along_reference(
     simulation: &Simulation<'_>,
-    n_instants: u32,
     visit: &mut dyn FnMut(&ReferenceAt, f64, f64),
 ) -> Result<(), (f64, OutOfReach)> {
     let plan = simulation.plan;
@@ -190,8 +173,8 @@ fn along_reference(
         check_bare(simulation, muscle)?;
     }
     for (elbow, muscle) in [(Elbow::new(&plan.load, &plan.forearm), &told), (real.elbow, &real.muscle)] {
-        for index in 0..=n_instants {
-            let time_s = plan.reference.duration_s * f64::from(index) / f64::from(n_instants);
+        for index in 0..=INSTANTS {
+            let time_s = plan.reference.duration_s * f64::from(index) / f64::from(INSTANTS);
             let at = plan.reference.at(time_s);
             let (length_m, needed_n) = check_instant(simulation, &elbow, muscle, time_s, at)?;
             visit(&at, length_m, needed_n);

@@ -82,10 +82,11 @@ pub fn read_table(path: &Path, dimensions: Option<&Path>) -> Result<Vec<Row>, Ta
             return Err(refuse("date", TableErrorKind::NoDate { found: given("date").to_owned() }));
         }
         let recording = folder.join(given("path"));
-        if let Some(&first) = seen.get(&recording) {
+        // `./log.csv` is `log.csv`, and a link leads where it leads; what is not there has its name alone.
+        let file = std::fs::canonicalize(&recording).unwrap_or_else(|_| recording.clone());
+        if let Some(first) = seen.insert(file, line) {
             return Err(refuse("path", TableErrorKind::Twice { first }));
         }
-        seen.insert(recording.clone(), line);
         let dimensions = match given("dimensions") {
             "" => dimensions.ok_or_else(|| refuse("dimensions", TableErrorKind::NoDimensions))?.to_owned(),
             named => folder.join(named),
@@ -135,9 +136,17 @@ fn is_date(text: &str) -> bool {
     let shaped =
         digits(0..4) && bytes.get(4) == Some(&b'-') && digits(5..7) && bytes.get(7) == Some(&b'-') && digits(8..10);
     let rest = bytes.get(10);
+    let number = |range: std::ops::Range<usize>| text.get(range).and_then(|part| part.parse::<u32>().ok()).unwrap_or(0);
+    let year = number(0..4);
+    let is_leap = year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
+    let days = match number(5..7) {
+        2 => 28 + u32::from(is_leap),
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    };
     shaped
         && within(5..7, 1, 12)
-        && within(8..10, 1, 31)
+        && within(8..10, 1, days)
         && (rest.is_none() || rest == Some(&b'T') || rest == Some(&b' '))
 }
 
@@ -162,6 +171,7 @@ mod tests {
             header.to_owned(),
             format!("{header}a.csv,m1,,2026-03-01,estimation\n"),
             format!("{header}a.csv,m1,r1,01.03.2026,estimation\n"),
+            format!("{header}a.csv,m1,r1,2026-02-29,estimation\n"),
             format!("{header}a.csv,m1,r1,2026-03-01,fit\n"),
             format!("{header}a.csv,m1,r1,2026-03-01,estimation\na.csv,m2,r1,2026-03-01,estimation\n"),
         ]
@@ -172,6 +182,7 @@ mod tests {
         table.csv:1:1: the table has no rows; give one for each recording
         table.csv:2:3: rig is empty; name it
         table.csv:2:4: "01.03.2026" is no date; write it as 2026-03-01
+        table.csv:2:4: "2026-02-29" is no date; write it as 2026-03-01
         table.csv:2:5: role is "fit", expected estimation or holdout
         table.csv:3:1: the same recording stands in line 2; keep one of the two
         "#);

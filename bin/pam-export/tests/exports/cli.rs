@@ -39,6 +39,16 @@ fn what_cannot_be_exported_is_refused_in_a_line() {
         named("--model model.json --c out/2nd.h"),
         "error: \"2nd\" gives no name for what is in it; begin the file's name with a letter, as in muscle.h"
     );
+    let mut huge = model(&[]);
+    let k1 = huge.find("\"name\": \"k1\"").unwrap();
+    let from = k1 + huge[k1..].find("\"value\": ").unwrap() + "\"value\": ".len();
+    let to = from + huge[from..].find(',').unwrap();
+    huge.replace_range(from..to, "1e300");
+    desk.write("huge.json", &huge);
+    for output in ["--c out.h", "--python out.py", "--mujoco out.xml", "--simulink out.m", "--vectors out.csv"] {
+        let said = named(&format!("--model huge.json {output}"));
+        assert!(said.contains("huge.json: the modelled force is") && said.contains("which no muscle has"), "{said}");
+    }
     assert!(named("--model nowhere.json --c out.h").starts_with("error: cannot read nowhere.json: "));
     assert!(named("--model broken.json --c out.h").contains("broken.json: parameter"));
     assert!(named("--model model.json --c model.json").contains("model.json"));

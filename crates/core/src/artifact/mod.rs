@@ -181,7 +181,12 @@ pub(crate) fn read<T: DeserializeOwned>(
         path: path.to_owned(),
         line: error.line(),
         column: error.column(),
-        reason: suggesting(&in_words(&without_position(&error.to_string()))),
+        // A recording begins with a word, an image with anything.
+        reason: if error.is_syntax() && error.line() == 1 && error.column() <= 2 {
+            "this is no JSON".to_owned()
+        } else {
+            suggesting(&in_words(&without_position(&error.to_string())))
+        },
         expected,
     };
     let head: Head = serde_json::from_slice(&bytes).map_err(|error| parse(&error))?;

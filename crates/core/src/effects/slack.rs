@@ -18,7 +18,7 @@ const RANGE_N: (f64, f64) = (-50.0, 50.0);
 /// Softnesses that are tried when every effect is named, in N.
 const SOFTNESSES_N: [f64; 4] = [2.0, 5.0, 10.0, 20.0];
 
-/// So many times the softness below the floor, `h` is its limit to nine digits.
+/// So many times the softness above or below the floor, `h` is its limit to nine digits or more.
 const FAR: f64 = 1e6;
 
 /// Below it the end is sharp, in N.
@@ -92,11 +92,18 @@ impl Memory for State {
 
 /// `h` where `h - w³ / h²` is `above_n`.
 fn taut_n(above_n: f64, softness_n: f64) -> f64 {
+    // Beyond the length of the strands a model has no force, which is no floor either.
+    if above_n.is_nan() {
+        return above_n;
+    }
     if softness_n < SHARP_N {
         return above_n.max(0.0);
     }
     if above_n < -FAR * softness_n {
         return softness_n * (softness_n / -above_n).sqrt();
+    }
+    if above_n > FAR * softness_n {
+        return above_n;
     }
     // From above, where the cubic is convex: every step of Newton's stays above.
     let ratio = softness_n / above_n.abs();
@@ -179,8 +186,17 @@ mod tests {
             let slope = (soft.reads(force_n + 1e-4) - soft.reads(force_n - 1e-4)) / 2e-4;
             assert!((soft.slope(force_n) - slope).abs() < 1e-6);
         }
-        assert_eq!(soft.reads(f64::NEG_INFINITY), 2.0);
+        assert_eq!([soft.reads(f64::NEG_INFINITY), soft.reads(f64::INFINITY)], [2.0, f64::INFINITY]);
         assert!((soft.reads(5000.0) - 5000.0).abs() < 1e-4);
+        assert_eq!(soft.reads(1e200), 1e200);
+    }
+
+    #[test]
+    fn what_is_no_force_is_read_as_none() {
+        for softness_n in [0.0, 1e-9, 5.0] {
+            let mut memory = Slack.start(&nominal(), &[2.0, softness_n]);
+            assert!(memory.reads(f64::NAN).is_nan(), "softness {softness_n} N");
+        }
     }
 
     #[test]

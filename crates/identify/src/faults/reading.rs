@@ -15,10 +15,13 @@
 //! that the model lacks.
 
 use pam_core::artifact::{InputRole, ModelArtifact};
+use pam_core::effects::AugmentedModel;
 use pam_core::force::ForceModel;
 
 use super::scale::unit_words;
-use crate::evaluate::Trace;
+use crate::error::IdentifyError;
+use crate::evaluate::{Trace, noise_floor_n, trace_augmented};
+use crate::prepare::Prepared;
 
 /// Times what the model missed of its own recordings, or what sensors or a refit leave, beyond which it misses one: half as much
 /// again. To its own recordings a model is within a percent of its refit; a gain of 2 % makes ten times as much.
@@ -108,6 +111,34 @@ pub fn is_missed(model: &ModelArtifact, rmse_n: f64, floor_n: f64) -> bool {
     let n_fitted = model.inputs.iter().filter(|input| input.role == InputRole::Estimation).count();
     let each = model.fit.recordings.iter().take(n_fitted).map(|recording| recording.statistics.rmse_n);
     rmse_n > MISSES * own_n(model).max(floor_n) && rmse_n > WORST * each.fold(0.0, f64::max)
+}
+
+/// What to say of a recording that `model`, with the effects and memories of `artifact`, misses by `rmse_n`; nothing where it
+/// follows it as it followed its own.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn missed(
+    prepared: &Prepared,
+    artifact: &ModelArtifact,
+    model: &AugmentedModel,
+    rmse_n: f64,
+) -> Result<Option<String>, IdentifyError> {
+    let floor_n = noise_floor_n(std::slice::from_ref(prepared), model.base())?;
+    // A worse sensor is no other muscle.
+    if !is_missed(artifact, rmse_n, floor_n) {
+        return Ok(None);
+    }
+    let own_n = own_n(artifact).max(floor_n);
+    let trace = trace_augmented(prepared, model, artifact.direction, 0)?;
+    let reason = match said(&explain(&[trace], model.base(), own_n)) {
+        Some(instrument) => format!("{instrument}, or it is of another muscle"),
+        None => "it is of another muscle, or of more physics than the model has: pam-diagnose tells".to_owned(),
+    };
+    Ok(Some(format!(
+        "{}: the model misses this recording by {rmse_n:.2} N, and those that it was identified on by {:.2} N: {reason}",
+        prepared.recording.path, artifact.fit.estimation.rmse_n
+    )))
 }
 
 /// RMSE of `model` on its own recordings, never below what their sensors leave, in N.

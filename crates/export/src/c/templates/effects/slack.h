@@ -6,7 +6,7 @@ static inline double pam_taut_n(double above_n, double softness_n)
     double taut_n;
     int i;
     if (softness_n < sharp_n) {
-        return fmax(above_n, 0.0);
+        return above_n < 0.0 ? 0.0 : above_n;
     }
     if (above_n < -far * softness_n) {
         return softness_n * sqrt(softness_n / -above_n);
