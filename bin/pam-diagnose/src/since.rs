@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use anyhow::ensure;
+use anyhow::{anyhow, ensure};
 use pam_cli::{Console, Output, publish, read_recordings};
 use pam_core::artifact::change::{Change, ChangeArtifact, ChangeConfig, ChangeVerdict, Compared, SCHEMA};
-use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, readable_json};
+use pam_core::artifact::{ArtifactError, Input, InputRole, ModelArtifact, Tool, readable_json};
 use pam_diagnosis::since::{Request, changes, check, words};
 use pam_report::number::{engineering, engineering_with_stderr, significant};
 use pam_report::text::wrapped;
@@ -22,7 +22,12 @@ pub(crate) fn since(args: &Args, console: &Console, path: &Path) -> anyhow::Resu
         path.map(|path| Ok(Output::open(path)?.apart_from(inputs())?)).transpose()
     };
     let (out, report) = (open(&args.out)?, open(&args.report)?);
-    let (baseline, sha256) = ModelArtifact::read(path)?;
+    let (baseline, sha256) = ModelArtifact::read(path).map_err(|error| match error {
+        ArtifactError::Schema { found, .. } if found.starts_with("pam-diagnosis/") => {
+            anyhow!("{}: is a diagnosis; name the model that pam-diagnose --out-model wrote with it", path.display())
+        }
+        error => error.into(),
+    })?;
     if let Some(model_path) = &args.model {
         same_muscle((path, &baseline), (model_path, &ModelArtifact::read(model_path)?.0))?;
     }

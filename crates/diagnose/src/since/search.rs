@@ -18,8 +18,9 @@ const FURTHER_LOG_RATIO: f64 = 4.0;
 const LEAST_CHI_SQUARE: f64 = 25.0;
 /// Share of what the sensors leave (mean squares) that it must explain.
 const LEAST_OF_FLOOR: f64 = 0.05;
-/// Share of the evidence of what was named that another one reaches where these recordings cannot tell the two.
-const RIVAL: f64 = 0.85;
+/// Share of the evidence of what was named that another one reaches at least where these recordings cannot tell the two; beside
+/// that it must fit as well, but for chance.
+const RIVAL: f64 = 0.7;
 /// Subjects whose shapes are refined.
 const REFINED: usize = 8;
 /// Factors by which shapes are refined, one after the other.
@@ -99,7 +100,7 @@ impl Later<'_> {
         let without = (0..best.hypothesis.changes.len())
             .map(|index| {
                 let (rest, its_weight) = self.from_above(without(&best.hypothesis, index, then))?;
-                let rivals = self.rivals(&rest, &best, index, &first, bounds, its_weight);
+                let rivals = self.rivals(&rest, &best, index, &first, bounds, (its_weight, weight));
                 Some((rest.held_out, rivals))
             })
             .collect::<Option<Vec<_>>>()?;
@@ -188,7 +189,7 @@ impl Later<'_> {
         index: usize,
         first: &[Trial],
         bounds: &Bounds<'_>,
-        weight: f64,
+        (its_weight, weight): (f64, f64),
     ) -> Vec<String> {
         let own = rest.held_out.log_ratio(&best.held_out);
         let named = best.hypothesis.changes[index].subject;
@@ -198,10 +199,14 @@ impl Later<'_> {
             .filter(|trial| trial.evidence > 0.3 * highest.min(own) && !trial.subject.is(named))
             .map(|trial| trial.subject)
             .collect();
-        let trials = self.trials(rest, bounds, weight, Some(&promising));
+        let trials = self.trials(rest, bounds, its_weight, Some(&promising));
         trials
             .iter()
             .filter(|trial| trial.evidence > RIVAL * own)
+            .filter(|trial| {
+                let settled = self.settle(trial.hypothesis.clone(), weight);
+                settled.is_some_and(|settled| self.chi_square(&settled, best, weight) < LEAST_CHI_SQUARE)
+            })
             .map(|trial| trial.subject.id(&trial.hypothesis.point))
             .collect()
     }
