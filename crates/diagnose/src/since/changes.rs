@@ -84,6 +84,7 @@ pub fn changes(request: Request) -> Result<Changes, DiagnoseError> {
         excluded: &config.excluded,
         most: config.max_changes,
         floor_n: baseline.floor_n,
+        missed_n: baseline.known.missed_n,
     };
     let later = Later { track: &track, rows, measured_n };
     let found = later.search(then, &bounds).ok_or_else(|| DiagnoseError::Undetermined { path: path() })?;

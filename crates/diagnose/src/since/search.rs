@@ -18,6 +18,9 @@ const FURTHER_LOG_RATIO: f64 = 4.0;
 const LEAST_CHI_SQUARE: f64 = 25.0;
 /// Share of what the sensors leave (mean squares) that it must explain.
 const LEAST_OF_FLOOR: f64 = 0.05;
+/// Share of what the model of then missed of its own recordings (mean squares) that a static change must explain, beside a static map
+/// as large; others must explain all of it.
+const OF_MISSED_STATIC: f64 = 0.25;
 /// Share of the evidence of what was named that another one reaches at least where these recordings cannot tell the two; beside
 /// that it must fit as well, but for chance.
 const RIVAL: f64 = 0.7;
@@ -45,6 +48,8 @@ pub(crate) struct Bounds<'a> {
     pub most: usize,
     /// What the sensors leave, in N.
     pub floor_n: f64,
+    /// How much the model of then missed its own recordings by beyond their noise, in N.
+    pub missed_n: f64,
 }
 
 /// A candidate beside what was taken.
@@ -232,7 +237,13 @@ fn without(hypothesis: &Hypothesis, index: usize, then: &Point) -> Hypothesis {
 fn is_worth(trial: &Trial, best: &Settled, bounds: &Bounds<'_>) -> bool {
     let least = if best.hypothesis.changes.is_empty() { LEAST_LOG_RATIO } else { FURTHER_LOG_RATIO };
     let gained = best.held_out.mean_square() - trial.held_out.mean_square();
-    trial.evidence > least && gained > LEAST_OF_FLOOR * bounds.floor_n.powi(2)
+    // What went without a name then may be what shows now.
+    let missed = match trial.subject {
+        Subject::Channel(_) | Subject::Base(_) => OF_MISSED_STATIC,
+        Subject::Known(_) | Subject::Gone(_) | Subject::New(..) => 1.0,
+    };
+    let least_gained = (LEAST_OF_FLOOR * bounds.floor_n.powi(2)).max(missed * bounds.missed_n.powi(2));
+    trial.evidence > least && gained > least_gained
 }
 
 /// Share of its evidence that a change keeps.

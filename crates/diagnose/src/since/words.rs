@@ -42,27 +42,18 @@ pub fn size(compared: &Compared, kind: ChangeKind) -> String {
     let Compared { name, unit, then, now, stderr, standard_errors } = compared;
     let short = name.rsplit('.').next().unwrap_or(name);
     let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-    let errors = stderr
-        .zip(*standard_errors)
-        .map_or(String::new(), |(stderr, errors)| format!(" ± {}, {errors:+.1} standard errors", number(stderr)));
+    let known = stderr.map_or(String::new(), |stderr| format!(" ± {}", number(stderr)));
+    let errors = standard_errors.map_or(String::new(), |errors| format!(", {errors:+.1} standard errors"));
     match (kind, then) {
-        (ChangeKind::Channel, _) => format!("{:+}{errors}{unit}", Rounded(*now)),
-        (_, Some(then)) if *then != 0.0 => format!(
-            "{short} {} → {}{errors}{unit}, {:+.0} %",
-            number(*then),
-            number(*now),
-            100.0 * (now - then) / then.abs()
-        ),
-        _ => format!("{short} {}{errors}{unit}", number(*now)),
-    }
-}
-
-struct Rounded(f64);
-
-impl std::fmt::Display for Rounded {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let sign = if self.0 >= 0.0 && formatter.sign_plus() { "+" } else { "" };
-        write!(formatter, "{sign}{}", number(self.0))
+        (ChangeKind::Channel, _) => {
+            let sign = if *now >= 0.0 { "+" } else { "" };
+            format!("{sign}{}{known}{unit}{errors}", number(*now))
+        }
+        (_, Some(then)) if *then != 0.0 => {
+            let percent = 100.0 * (now - then) / then.abs();
+            format!("{short} {} → {}{known}{unit}, {percent:+.0} %{errors}", number(*then), number(*now))
+        }
+        _ => format!("{short} {}{known}{unit}{errors}", number(*now)),
     }
 }
 
