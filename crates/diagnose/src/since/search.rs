@@ -80,7 +80,7 @@ impl Later<'_> {
     /// Searches, from the model of `then`.
     pub(crate) fn search(&self, then: &Point, bounds: &Bounds<'_>) -> Option<Found> {
         let nothing = Hypothesis { point: then.clone(), changes: Vec::new() };
-        let (start, mut weight) = self.from_above(nothing)?;
+        let (start, mut weight) = self.settle_downwards(nothing)?;
         let mut best = start.clone();
         let mut first: Vec<Trial> = Vec::new();
         while best.hypothesis.changes.len() < bounds.most {
@@ -104,7 +104,7 @@ impl Later<'_> {
         }
         let without = (0..best.hypothesis.changes.len())
             .map(|index| {
-                let (rest, its_weight) = self.from_above(without(&best.hypothesis, index, then))?;
+                let (rest, its_weight) = self.settle_downwards(without(&best.hypothesis, index, then))?;
                 let rivals = self.rivals(&rest, &best, index, &first, bounds, (its_weight, weight));
                 Some((rest.held_out, rivals))
             })
@@ -123,7 +123,7 @@ impl Later<'_> {
 
     /// `hypothesis` fitted, and the weight of what it leaves. Where a change is left, nuisances that are free enough take some
     /// of it, the weight falls, and they take more: so the weight comes down from one under which they take nothing.
-    fn from_above(&self, hypothesis: Hypothesis) -> Option<(Settled, f64)> {
+    fn settle_downwards(&self, hypothesis: Hypothesis) -> Option<(Settled, f64)> {
         let mut weight = self.measured_n.iter().map(|force_n| force_n * force_n).sum::<f64>().max(1.0);
         for _ in 0..2 {
             weight = self.weight(&self.settle(hypothesis.clone(), weight)?);
