@@ -22,13 +22,15 @@ use pam_diagnosis::diagnose::MAX_EFFECTS;
                   pam-diagnose log1.lvm log2.lvm --channels bench.toml --model model.json --out diagnosis.json\n\n\
                   Example: what could these recordings show, and what to record next\n  \
                   pam-diagnose run1.csv --model model.json --isolability --next-experiment setpoints.csv\n\n\
+                  Example: the same muscle a month later; what has changed since\n  \
+                  pam-diagnose later1.csv later2.csv --since augmented.json --out change.json --report change.html\n\n\
                   Example: what an effect is and what it looks like\n  \
                   pam-diagnose --explain stribeck --figure stribeck.svg\n\n\
                   Example: an effect of your own among the candidates\n  \
                   pam-diagnose run1.csv run2.csv --model model.json --effects touching-guard.toml --out diagnosis.json\n\n\
                   Exit codes: 0 done and understood (consistent, explained, ambiguous); 1 done, and unmodelled structure is \
                   left (unexplained, explained in part), or the model as given misses the recordings, or the \
-                  diagnosed one what was held out; 2 input or usage, another muscle included."
+                  diagnosed one what was held out; with --since, something has changed (changed, ambiguous, unexplained); 2 input or usage, another muscle included."
 )]
 pub(crate) struct Args {
     /// Recordings to diagnose; - is standard input.
@@ -36,10 +38,20 @@ pub(crate) struct Args {
     pub(crate) logs: Vec<PathBuf>,
 
     /// Model in question, as pam-identify wrote it.
-    #[arg(long, value_name = "MODEL.json", required_unless_present = "explain")]
+    #[arg(long, value_name = "MODEL.json", required_unless_present_any = ["explain", "since"])]
     pub(crate) model: Option<PathBuf>,
 
-    /// Diagnosis to write (pam-diagnosis/1); - is standard output.
+    /// Compare with an earlier diagnosis of the same muscle instead: the model that its --out-model wrote. Says what has
+    /// changed since, with its size; what was missing then is part of the base. With --model, that model must be of the
+    /// same muscle.
+    #[arg(
+        long,
+        value_name = "BASELINE.json",
+        conflicts_with_all = ["explain", "holdout", "out_model", "next_experiment", "isolability", "matters_above_n"]
+    )]
+    pub(crate) since: Option<PathBuf>,
+
+    /// Diagnosis to write (pam-diagnosis/1), or with --since what has changed (pam-change/1); - is standard output.
     #[arg(
         long,
         value_name = "DIAGNOSIS.json",
@@ -71,7 +83,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) matters_above_n: Option<f64>,
 
-    /// Most effects that may be named.
+    /// Most effects, or changes, that may be named.
     #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS as u32, value_parser = clap::value_parser!(u32).range(1..=10))]
     pub(crate) max_effects: u32,
 

@@ -7,6 +7,7 @@ mod own;
 mod page;
 mod provenance;
 mod run;
+mod since;
 mod tables;
 
 /// A search makes and frees thousands of matrices of some megabytes: with the system's allocator a third of its time goes into

@@ -13,7 +13,7 @@ use pam_diagnosis::traces::traces;
 use crate::args::Args;
 use crate::own::OwnEffects;
 use crate::provenance::Provenance;
-use crate::{explain, page, tables};
+use crate::{explain, page, since, tables};
 
 /// Samples of each recording that the report draws, at most.
 const REPORT_SAMPLES: usize = 20_000;
@@ -32,6 +32,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
         args.figure.is_none(),
         "--figure draws an effect; name it with --explain (figures of a diagnosis are in --report)"
     );
+    if let Some(baseline) = &args.since {
+        return since::since(args, &console, baseline);
+    }
     let model_path = args.model.as_deref().context("--model is missing")?;
     if let Some(limit) = args.matters_above_n {
         ensure!(

@@ -4,12 +4,16 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use schemars::JsonSchema;
 
+use pam_core::artifact::ChangeArtifact;
 use pam_core::recording::ChannelsFile;
 
 use crate::message::Message;
 
 /// Option, and kind of schema, of the file that says what columns mean.
 const CHANNELS: &str = "channels";
+
+/// Option, and kind of schema, of what has changed since an earlier diagnosis.
+const SINCE: &str = "since";
 
 /// Gives the text of a JSON schema.
 pub(crate) type Schema = fn() -> String;
@@ -22,7 +26,8 @@ pub(crate) fn schema<T: JsonSchema>() -> String {
 /// `command` with the options below; `has_artifact` where the program writes an artifact that has a schema.
 pub(crate) fn with_options(command: Command, has_artifact: bool) -> Command {
     let reads = command.get_arguments().any(|argument| argument.get_id() == CHANNELS);
-    let kinds = [("artifact", has_artifact), ("messages", true), (CHANNELS, reads)];
+    let compares = command.get_arguments().any(|argument| argument.get_id() == SINCE);
+    let kinds = [("artifact", has_artifact), ("messages", true), (CHANNELS, reads), (SINCE, compares)];
     let of: Vec<&str> = kinds.into_iter().filter(|(_, known)| *known).map(|(kind, _)| kind).collect();
     let help = match (has_artifact, reads) {
         (true, true) => {
@@ -69,6 +74,7 @@ pub(crate) fn asked_for(
     if let Some(of) = matches.get_one::<String>("schema") {
         let schema = match of.as_str() {
             CHANNELS => schema::<ChannelsFile>,
+            SINCE => schema::<ChangeArtifact>,
             "artifact" => artifact.unwrap_or(schema::<Message>),
             _ => schema::<Message>,
         };

@@ -42,6 +42,38 @@ pub enum DiagnoseError {
         /// What would explain it, in words.
         reason: String,
     },
+    /// Later recordings that the model of then does not follow at all.
+    #[error(
+        "{path}: the baseline explains {explained:.0} % of the force and misses it by {left_n:.1} N, by {now_n:.1} N with all that may \
+         have changed: it is of another muscle; name the baseline of this one, or go on with --accept-implausible"
+    )]
+    NotOfThen {
+        /// First recording.
+        path: String,
+        /// RMSE of the model of then, in N.
+        left_n: f64,
+        /// The same with what changes explain, in N.
+        now_n: f64,
+        /// Share of the variance that it explains, in percent.
+        explained: f64,
+    },
+    /// Later recordings where the model of then was never asked.
+    #[error(
+        "{path}: hardly anything lies within the pressures ({low:.0} to {high:.0} kPa) and lengths ({short:.1} to {long:.1} mm) of \
+         the baseline; record within them, or diagnose the recordings by themselves"
+    )]
+    Elsewhere {
+        /// First recording.
+        path: String,
+        /// Lowest pressure, in kPa.
+        low: f64,
+        /// Highest pressure, in kPa.
+        high: f64,
+        /// Shortest length, in mm.
+        short: f64,
+        /// Longest length, in mm.
+        long: f64,
+    },
     /// A channel that should vary does not.
     #[error("{path}: {channel} stays at {value} {unit} throughout; check its wiring, or leave the recording out")]
     Constant {

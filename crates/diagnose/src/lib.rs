@@ -34,6 +34,7 @@ mod rehearsal;
 pub mod search;
 pub mod sheet;
 mod short;
+pub mod since;
 mod stand_ins;
 pub mod state;
 mod steps;

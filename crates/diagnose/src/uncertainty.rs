@@ -7,6 +7,7 @@ use pam_identification::search_space::SearchSpace;
 
 use crate::joint::JointFit;
 use crate::state::{Setting, State};
+use crate::track::Track;
 
 /// Standard errors by the jackknife over folds: base coordinates (in the unit box), then amplitudes (SI).
 #[derive(Debug, Clone, PartialEq)]
@@ -93,12 +94,17 @@ pub fn shape_errors(setting: &Setting<'_>, state: &State, index: usize, correlat
 
 /// Instants that share their residual with one: `1 + 2 Σ ρ`, summed until the correlation dies away.
 pub fn correlated_instants(setting: &Setting<'_>, residuals_n: &[f64]) -> f64 {
+    correlated(setting.track, residuals_n)
+}
+
+/// The same over the instants of `track` that count.
+pub(crate) fn correlated(track: &Track, residuals_n: &[f64]) -> f64 {
     let mut sums = vec![0.0; 200];
     let mut counts = vec![0.0; 200];
-    for range in &setting.track.recordings {
-        for at in range.clone().step_by(3).filter(|&at| setting.track.counted[at]) {
+    for range in &track.recordings {
+        for at in range.clone().step_by(3).filter(|&at| track.counted[at]) {
             for lag in 0..sums.len() {
-                if at + lag < range.end && setting.track.counted[at + lag] {
+                if at + lag < range.end && track.counted[at + lag] {
                     sums[lag] += residuals_n[at] * residuals_n[at + lag];
                     counts[lag] += 1.0;
                 }

@@ -5,9 +5,11 @@
 //!
 //! In reading order: [`number`] (how numbers are written), [`Table`], [`text`] (what fits a terminal), [`plot`] (what figures are made of),
 //! [`fit_figure()`] (the figure of a fit), [`prediction_figure()`] (of a prediction), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
-//! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`fleet_page()`] (of many muscles), [`signature_figure()`] (what
+//! [`envelope_figure()`] (of many lifts), [`diagnosis_page()`] (the page of a diagnosis), [`fleet_page()`] (of many muscles), [`change_page()`] (of one muscle then and
+//! now), [`signature_figure()`] (what
 //! an effect looks like), [`confusion_figure()`] (what was concealed and what was named).
 
+mod change_page;
 mod confusion_figure;
 mod diagnosis_page;
 mod envelope_figure;
@@ -27,6 +29,7 @@ mod signature_figure;
 mod table;
 pub mod text;
 
+pub use change_page::{ChangePage, PageChange, PageCompared, change_page};
 pub use confusion_figure::{ConfusionFigure, confusion_figure};
 pub use diagnosis_page::{
     DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageCoordinate, PageEffect,

@@ -3,6 +3,7 @@
 //! Every artifact begins with `schema`, `tool`, `inputs`, `config` and `seed`. Equal inputs give equal bytes on
 //! any thread count; time stamps stay out.
 
+pub mod change;
 pub mod comparison;
 pub mod diagnosis;
 mod effect_entry;
@@ -14,6 +15,7 @@ pub mod inverse;
 pub mod model;
 pub mod prediction;
 
+pub use change::ChangeArtifact;
 pub use comparison::ComparisonArtifact;
 pub use diagnosis::DiagnosisArtifact;
 pub use estimates::Estimates;
