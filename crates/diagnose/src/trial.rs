@@ -41,15 +41,14 @@ const PRESSED_CHARGE: f64 = 0.7;
 const DEGENERATE_CHARGE: f64 = 0.2;
 
 /// Whether a shape is at an end of its range that says more than how: zero, and the ends that an effect means, say no more.
-fn is_degenerate(guess: &Guess) -> bool {
-    let effect = guess.effect;
+pub(crate) fn is_degenerate(effect: &dyn Effect, shape: &[f64]) -> bool {
     let at_an_end = |(index, (parameter, &value)): (usize, (&Shape, &f64))| {
         let (low, high) = parameter.range;
         let near = 1e-3 * (high - low);
         let is_meant = |end: f64| end == 0.0 || effect.may_end(index, end);
         value <= low + near.min(0.05 * low.abs()) && !is_meant(low) || value >= high - near && !is_meant(high)
     };
-    effect.kind() != Kind::Event && effect.shape().iter().zip(&guess.shape).enumerate().any(at_an_end)
+    effect.kind() != Kind::Event && effect.shape().iter().zip(shape).enumerate().any(at_an_end)
 }
 
 /// Share of its evidence that an effect loses for every parameter beyond the first: of two that explain as much, the simpler
@@ -139,7 +138,7 @@ pub fn among(
             let (held_out, is_pressed) = weigh(setting, state, &guess)?;
             let looked_for = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
             let strained = if is_pressed { PRESSED_CHARGE } else { 1.0 };
-            let degenerate = if is_degenerate(&guess) { DEGENERATE_CHARGE } else { 1.0 };
+            let degenerate = if is_degenerate(guess.effect, &guess.shape) { DEGENERATE_CHARGE } else { 1.0 };
             let beginnings = if guess.carried { setting.track.recordings.len() } else { 0 };
             let n_parameters = guess.effect.shape().len() + guess.amplitudes().len() + beginnings;
             let freedom = 1.0 - FREEDOM_CHARGE * n_parameters.saturating_sub(1) as f64;
@@ -248,29 +247,28 @@ mod tests {
 
     use pam_core::effects::effect;
 
-    fn guess(id: &str, shape: &[f64]) -> Guess {
-        let effect = effect(id).expect("an effect of the catalogue");
-        Guess { effect, shape: shape.to_vec(), sign: crate::hypothesis::Sign::Any, carried: false }
+    fn of(id: &str) -> &'static dyn Effect {
+        effect(id).expect("an effect of the catalogue")
     }
 
     #[test]
     fn a_rigid_mount_and_a_whole_share_are_no_degenerate_shapes() {
-        assert!(!is_degenerate(&guess("inertia", &[200.0])));
-        assert!(is_degenerate(&guess("inertia", &[12.0])));
-        assert!(!is_degenerate(&guess("series-compliance", &[1e-5, 1.0, 0.0])));
-        assert!(is_degenerate(&guess("series-compliance", &[1e-4, 1.0, 0.0])));
-        assert!(is_degenerate(&guess("presliding-hysteresis", &[2e-4, 0.0])));
+        assert!(!is_degenerate(of("inertia"), &[200.0]));
+        assert!(is_degenerate(of("inertia"), &[12.0]));
+        assert!(!is_degenerate(of("series-compliance"), &[1e-5, 1.0, 0.0]));
+        assert!(is_degenerate(of("series-compliance"), &[1e-4, 1.0, 0.0]));
+        assert!(is_degenerate(of("presliding-hysteresis"), &[2e-4, 0.0]));
     }
 
     #[test]
     fn a_creep_that_is_all_of_the_length_is_a_relaxation_instead() {
-        assert!(is_degenerate(&guess("pressure-creep", &[6.0, 1.0])));
+        assert!(is_degenerate(of("pressure-creep"), &[6.0, 1.0]));
     }
 
     #[test]
     fn an_exponent_at_its_end_is_a_form_and_a_speed_at_its_end_is_another_effect() {
-        assert!(!is_degenerate(&guess("stribeck", &[5e-3, 0.5])));
-        assert!(is_degenerate(&guess("stribeck", &[5e-2, 1.0])));
-        assert!(!is_degenerate(&guess("force-drift", &[4e3])));
+        assert!(!is_degenerate(of("stribeck"), &[5e-3, 0.5]));
+        assert!(is_degenerate(of("stribeck"), &[5e-2, 1.0]));
+        assert!(!is_degenerate(of("force-drift"), &[4e3]));
     }
 }

@@ -8,6 +8,7 @@ use super::candidate::{nearby, variants};
 use super::hypothesis::{Hypothesis, Later, Settled, Subject};
 use super::point::Point;
 use crate::joint::HeldOut;
+use crate::trial::is_degenerate;
 use crate::uncertainty::correlated;
 
 /// `Σ ln(without / with)` over blocks left out of the fit that a change must reach.
@@ -252,13 +253,8 @@ fn charge(subject: Subject, hypothesis: &Hypothesis, n_recordings: usize) -> f64
     let mut n = change.moved.len() + change.brings.map_or(0, |_| n_recordings);
     let mut degenerate = 1.0;
     if let Subject::New(term, effect) = subject {
-        let shapes = effect.shape().iter().zip(&hypothesis.point.terms[term].shape);
         n += effect.shape().len();
-        let at_an_end = |((low, high), value): ((f64, f64), f64)| {
-            let near = 1e-3 * (high - low);
-            (low != 0.0 && value <= low + near.min(0.05 * low.abs())) || value >= high - near
-        };
-        if !effect.may_end() && shapes.map(|(shape, &value)| (shape.range, value)).any(at_an_end) {
+        if is_degenerate(effect, &hypothesis.point.terms[term].shape) {
             degenerate = DEGENERATE;
         }
     }

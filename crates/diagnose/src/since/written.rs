@@ -11,7 +11,7 @@ use super::hypothesis::{Change as Moved, Later, Subject};
 use super::point::Point;
 use super::quantity::{Channel, Quantity};
 use super::search::Found;
-use crate::diagnose::evidence;
+use crate::named::evidence;
 
 /// Times what the model of then left of its own recordings, or the sensors leave, that may be left of later ones.
 const LEFT: f64 = 1.5;
