@@ -93,7 +93,7 @@ pub(crate) struct Args {
 
     /// Effects of your own to consider beside the catalogue: a name, a sentence of the grammar and ranges (TOML, as
     /// configs/effects/touching-guard.toml).
-    #[arg(long, value_name = "EFFECTS.toml")]
+    #[arg(long, value_name = "EFFECTS.toml", conflicts_with = "since")]
     pub(crate) effects: Option<PathBuf>,
 
     /// Go on where ranges or correlations say that an instrument is wrong or the recording is of another muscle.
