@@ -621,8 +621,8 @@ fn every_mistake_gets_one_line_with_place_and_remedy() {
     error: two outputs go to refused.json; name different ones
     error: cannot write model.json: it is also an input, which the run would destroy; name another
     error: cannot write /dev/full: no space left on the device; free some or name a path elsewhere
-    error: invalid value 'stribek' for '--exclude <ID>': no effect is called "stribek"; did you mean stribeck?; see --help
-    error: invalid value 'gearbox' for '--exclude <ID>': no effect is called "gearbox"; pam-diagnose --explain all lists them; see --help
+    error: --exclude: no effect is called "stribek"; did you mean stribeck?
+    error: --exclude: no effect is called "gearbox"; pam-diagnose --explain all lists them
     error: invalid value '0' for '--max-effects <N>': 0 is not in 1..=10; see --help
     error: --matters-above-n -1 is no size of a force; give newtons from 0 up
     error: the following required arguments were not provided: --out <DIAGNOSIS.json>; see --help
