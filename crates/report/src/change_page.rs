@@ -174,6 +174,6 @@ mod tests {
         };
         let html = change_page(&page);
         assert!(html.contains("What has changed since &lt;a&gt;.json") && html.contains("mind &lt;this&gt;"));
-        assert!(html.contains("180 ± 3 kPa") && html.contains("-13.3") && html.contains("cannot distinguish it"));
+        assert!(html.contains("180 ± 3 kPa") && html.contains("−13.3") && html.contains("cannot distinguish it"));
     }
 }
