@@ -1,6 +1,6 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 //!
-//! [`beside`] is what a hypothesis is judged beside, [`look`] a look at the catalogue, [`worth`] what a trial must gain, [`settle`] how
+//! [`mod@beside`] is what a hypothesis is judged beside, [`mod@look`] a look at the catalogue, [`mod@worth`] what a trial must gain, [`mod@settle`] how
 //! what was taken settles with what was there.
 
 mod beside;

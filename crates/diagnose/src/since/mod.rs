@@ -15,7 +15,7 @@
 //!
 //! In reading order: [`point`] is the model and the channels as numbers that move, [`quantity`] those numbers, [`rows`] the
 //! regression that every hypothesis is judged by, [`hypothesis`] what is said to have changed and its fit, [`candidate`] what may have,
-//! [`search`] the search, [`changes`] all
+//! [`search`] the search, [`mod@changes`] all
 //! of it in order.
 
 mod baseline;
