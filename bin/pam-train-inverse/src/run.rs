@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, ensure};
+use anyhow::{Context as _, anyhow, bail, ensure};
 use pam_cli::{Console, Output, Verdict, pretty_json, publish, read_recordings};
 use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool};
-use pam_core::recording::ReadOptions;
+use pam_core::recording::{ReadOptions, Recording, first_shared};
 use pam_inverse_model::report::{Outcome, Prepared};
 use pam_report::PictureFormat;
 
@@ -33,6 +33,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let read = args.read.resolve()?;
     hashes.extend(read.channels);
     let recordings = read_recordings(&args.logs, &ReadOptions { force_required: false, ..read.options }, &console)?;
+    apart(&recordings)?;
     hashes.extend(recordings.iter().map(|recording| Input::recording(recording, InputRole::Training)));
     let config = args.config();
     let seed = args.run.seed;
@@ -75,6 +76,25 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         return Ok(Verdict::Rejected);
     }
     Ok(Verdict::Accepted)
+}
+
+/// Refuses recordings that share samples: points of what is there twice would weigh twice, and be trained at and judged at as well.
+fn apart(recordings: &[Recording]) -> anyhow::Result<()> {
+    let all: Vec<&Recording> = recordings.iter().collect();
+    let shared = first_shared(&all).map_err(|(index, reason)| {
+        anyhow!(
+            "{}: cannot read the samples back from the temporary file: {reason}; set TMPDIR to a folder with room",
+            recordings[index].path
+        )
+    })?;
+    if let Some((first, second)) = shared {
+        bail!(
+            "{}: has the same samples as {}; a recording counts once: leave one of them out",
+            recordings[second].path,
+            recordings[first].path
+        );
+    }
+    Ok(())
 }
 
 /// Error of a model on a recording of its own muscle, as a share of its range of force and as a multiple of its error on

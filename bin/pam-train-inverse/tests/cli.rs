@@ -257,3 +257,20 @@ fn a_mistake_on_the_command_line_is_one_line() {
     insta::assert_snapshot!(say(&["--figure", "inverse.json"]), @"error: two outputs go to inverse.json; name different ones");
     insta::assert_snapshot!(say(&["missing.csv"]), @"error: missing.csv: no such file; check the path");
 }
+
+#[test]
+fn a_recording_is_trained_at_once() {
+    let folder = folder_with(&model_json(Change::None));
+    let noisy = |row: u32| f64::from(row * 7919 % 101) / 101.0;
+    let row = |row: u32| {
+        let phase = f64::from(row) * 0.0628;
+        let (pressure_kpa, length_mm) = (250.0 + 150.0 * phase.sin() + noisy(row), 240.0 + 10.0 * (0.7 * phase).sin());
+        format!("{:.2},{pressure_kpa:.3},{length_mm:.3},{:.3}\n", f64::from(row) * 0.01, 300.0 + noisy(row))
+    };
+    for (name, rows) in [("log.csv", 0..1000), ("part.csv", 200..700)] {
+        let rows: String = rows.map(row).collect();
+        std::fs::write(folder.path().join(name), format!("time_s,pressure_kPa,length_mm,force_N\n{rows}")).unwrap();
+    }
+    let said = refused(folder.path(), &train(folder.path(), &["log.csv", "part.csv"]));
+    insta::assert_snapshot!(said, @"error: part.csv: has the same samples as log.csv; a recording counts once: leave one of them out");
+}

@@ -41,7 +41,7 @@ pub use options::{Calibration, ColumnMap, Columns, ExpressionFault, FixedChannel
 pub use read::{ReadOptions, read_recording, read_recording_observed};
 pub use repair::{Repairs, SkippedRow};
 pub use row_fault::RowFault;
-pub use sameness::share_samples;
+pub use sameness::{Repeated, first_shared, repeats_itself, share_samples};
 pub use samples::{CHUNK_ROWS, Chunk, MEMORY_ROWS, Samples};
 pub use units::Quantity;
 

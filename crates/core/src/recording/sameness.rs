@@ -7,6 +7,8 @@
 
 use std::io;
 
+use rayon::prelude::*;
+
 use super::{CHUNK_ROWS, Recording};
 
 /// Runs of rows that are looked for, and rows of each.
@@ -22,12 +24,67 @@ const SAME_NOISE: f64 = 0.9;
 const MOST_THINNED: usize = 16;
 /// Share of the runs that must be found for two recordings to share samples.
 const SHARE: f64 = 0.1;
+/// Runs that a recording must have again at one distance for it to repeat itself, and share of neighboring second differences
+/// of other signs that noise has, where a smooth path has few: a simulation without noise repeats itself at every cycle.
+const REPEATED: usize = 3;
+const TURNS: f64 = 0.4;
 /// Cells by which a row finds the runs that may begin with it.
 const CELLS: usize = 1024;
 
 /// A run of rows: pressure, length, force; the last is zero where none was recorded.
 struct Probe {
+    /// Its first row.
+    start: usize,
     rows: [[f64; 3]; PROBE_ROWS],
+}
+
+/// Rows of a recording that stand in it once more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Repeated {
+    /// First row of a run that comes again, counted from 0.
+    pub row: usize,
+    /// Where it comes again.
+    pub again: usize,
+    /// Share of the recording's runs that come again at this distance, in percent.
+    pub percent: usize,
+}
+
+/// Stretches of a recording that were appended to it, or pasted into it, once more: a logger that was stopped and wrote its buffer
+/// again. None where nothing repeats but the path.
+///
+/// # Errors
+/// Where samples cannot be read back.
+pub fn repeats_itself(recording: &Recording) -> io::Result<Option<Repeated>> {
+    let mut probes = probes(recording)?;
+    probes.retain(Probe::is_noisy);
+    // Of each run, the first place where it comes again.
+    let found = places(&probes, recording, 1, true)?;
+    let mut distances: Vec<(usize, usize)> = probes
+        .iter()
+        .zip(found)
+        .filter_map(|(probe, again)| Some((again?.abs_diff(probe.start), probe.start)))
+        .collect();
+    distances.sort_unstable();
+    let repeated = distances.chunk_by(|left, right| left.0 == right.0).max_by_key(|same| same.len());
+    Ok(repeated.filter(|same| same.len() >= REPEATED).map(|same| Repeated {
+        row: same[0].1,
+        again: same[0].1 + same[0].0,
+        percent: 100 * same.len() / probes.len(),
+    }))
+}
+
+/// The first two of `recordings` that share samples, by index, the earlier one first.
+///
+/// # Errors
+/// The index of a recording whose samples cannot be read back, and why.
+pub fn first_shared(recordings: &[&Recording]) -> Result<Option<(usize, usize)>, (usize, io::Error)> {
+    let pairs: Vec<(usize, usize)> =
+        (0..recordings.len()).flat_map(|second| (0..second).map(move |first| (first, second))).collect();
+    let shared: Result<Vec<bool>, (usize, io::Error)> = pairs
+        .par_iter()
+        .map(|&(first, second)| share_samples(recordings[first], recordings[second]).map_err(|reason| (second, reason)))
+        .collect();
+    Ok(shared?.into_iter().position(|shared| shared).map(|place| pairs[place]))
 }
 
 /// Whether two recordings share samples, enough of them that what is held out is no more held out, and what is fitted
@@ -84,7 +141,7 @@ fn probe(recording: &Recording, start: usize) -> io::Result<Option<Probe>> {
         let row = here + row;
         [chunk.pressure_pa()[row], chunk.length_m()[row], force_n.get(row).copied().unwrap_or(0.0)]
     });
-    Ok(Some(Probe { rows }))
+    Ok(Some(Probe { start, rows }))
 }
 
 impl Probe {
@@ -105,6 +162,13 @@ impl Probe {
         Self::bends(&self.rows, channel).map(|bend| bend * bend).sum::<f64>().sqrt() / largest
     }
 
+    /// Whether it flickers as noise does.
+    fn is_noisy(&self) -> bool {
+        let bends: Vec<f64> = Self::bends(&self.rows, self.noisy_channel()).collect();
+        let turns = bends.windows(2).filter(|two| two[0] * two[1] < 0.0).count();
+        turns as f64 > TURNS * (bends.len() - 1) as f64
+    }
+
     /// Whether `rows` are this run.
     fn is(&self, rows: &[[f64; 3]; PROBE_ROWS]) -> bool {
         let channel = self.noisy_channel();
@@ -120,6 +184,16 @@ impl Probe {
 
 /// How many of the runs are in a recording, at any of the strides of a recording that was thinned out.
 fn count_found(probes: &[Probe], among: &Recording) -> io::Result<usize> {
+    Ok(places(probes, among, MOST_THINNED, false)?.into_iter().flatten().count())
+}
+
+/// Where each of the runs is first in a recording, at strides of up to `most_thinned`; where the runs are its own, elsewhere.
+fn places(
+    probes: &[Probe],
+    among: &Recording,
+    most_thinned: usize,
+    are_its_own: bool,
+) -> io::Result<Vec<Option<usize>>> {
     // The channel that rows are sorted into cells by: force, or pressure where there is none.
     let key = if among.samples.has_force() && probes.iter().any(|probe| probe.rows[0][2] != 0.0) { 2 } else { 0 };
     let mut largest = [f64::MIN_POSITIVE; 3];
@@ -140,10 +214,11 @@ fn count_found(probes: &[Probe], among: &Recording) -> io::Result<usize> {
         let near = cell(first - tolerance[key])..=cell(first + tolerance[key]).min(CELLS);
         cells[near].iter_mut().for_each(|cell| cell.push(index));
     }
-    let mut is_found = vec![false; probes.len()];
+    let mut is_found: Vec<Option<usize>> = vec![None; probes.len()];
     // A run may go on in the next chunk.
-    let reach = PROBE_ROWS * MOST_THINNED;
+    let reach = PROBE_ROWS * most_thinned;
     let mut before: Vec<[f64; 3]> = Vec::new();
+    let mut first_row = 0;
     let n_chunks = among.samples.n_chunks();
     for chunk_index in 0..n_chunks {
         let chunk = among.samples.chunk(chunk_index)?;
@@ -160,19 +235,22 @@ fn count_found(probes: &[Probe], among: &Recording) -> io::Result<usize> {
             }
             let Some(candidates) = cells.get(cell(value)) else { continue };
             for &index in candidates {
-                if !is_found[index] && agree(&probes[index].rows[0], &before[start]) {
-                    is_found[index] = (1..=MOST_THINNED).any(|stride| {
+                let is_itself = are_its_own && (first_row + start).abs_diff(probes[index].start) < PROBE_ROWS;
+                if is_found[index].is_none() && !is_itself && agree(&probes[index].rows[0], &before[start]) {
+                    let is_here = (1..=most_thinned).any(|stride| {
                         let all = (1..PROBE_ROWS).all(|row| {
                             before.get(start + row * stride).is_some_and(|other| agree(&probes[index].rows[row], other))
                         });
                         all && probes[index].is(&std::array::from_fn(|row| before[start + row * stride]))
                     });
+                    is_found[index] = is_here.then_some(first_row + start);
                 }
             }
         }
         before.drain(..end);
+        first_row += end;
     }
-    Ok(is_found.into_iter().filter(|found| *found).count())
+    Ok(is_found)
 }
 
 #[cfg(test)]
@@ -236,6 +314,41 @@ mod tests {
         let (early, late) =
             (recording(&columns, |row| row < 12_000, false), recording(&columns, |row| row > 8_000, false));
         assert!(shared(&early, &late), "two cuts that overlap");
+    }
+
+    #[test]
+    fn a_stretch_that_was_pasted_in_again_is_found_and_a_path_that_is_run_again_is_not() {
+        let columns = run(1, 1.0);
+        let again = |rows: std::ops::Range<usize>, at: usize| {
+            let mut pasted = columns.clone();
+            for (column, whole) in pasted.iter_mut().zip(&columns).skip(1) {
+                column.splice(at..at, whole[rows.clone()].iter().copied());
+            }
+            pasted[0] = (0..pasted[1].len()).map(|row| 0.005 * row as f64).collect();
+            repeats_itself(&recording(&pasted, |_| true, false)).unwrap()
+        };
+        let whole = again(0..20_000, 20_000).expect("appended once more");
+        assert_eq!(whole.again - whole.row, 20_000);
+        let part = again(4_000..9_000, 15_000).expect("pasted in");
+        assert_eq!(part.again - part.row, 11_000, "the distance of the two places");
+        assert_eq!(repeats_itself(&recording(&columns, |_| true, false)).unwrap(), None, "as it is");
+        // Two cycles of 25 s, sampled at the same phases: with noise they are two, and without it nobody can tell.
+        for noise in [0.0, 0.3] {
+            let mut generator = rand_pcg::Pcg64::seed_from_u64(3);
+            let mut cycles = run(2, 0.0);
+            let turn = std::f64::consts::TAU / 5_000.0;
+            let [_, pressure_pa, length_m, force_n] = &mut cycles;
+            for (row, ((pressure_pa, length_m), force_n)) in
+                pressure_pa.iter_mut().zip(length_m).zip(force_n).enumerate()
+            {
+                let phase = turn * (row % 5_000) as f64;
+                let mut noisy = |value: f64, size: f64| value + noise * size * generator.random_range(-1.0..1.0);
+                *pressure_pa = noisy(2.5e5 + 2e5 * phase.sin(), 500.0);
+                *length_m = noisy(0.24 + 0.02 * phase.cos(), 3e-5);
+                *force_n = noisy(400.0 + 300.0 * phase.sin(), 0.5);
+            }
+            assert_eq!(repeats_itself(&recording(&cycles, |_| true, false)).unwrap(), None, "noise {noise}");
+        }
     }
 
     #[test]

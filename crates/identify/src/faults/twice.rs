@@ -1,10 +1,9 @@
 //! A recording that is there twice.
 //!
 //! Fitted twice, its samples count twice and standard errors shrink for nothing; fitted and held out, it proves nothing. Its
-//! samples tell, not its name: see [`share_samples`].
+//! samples tell, not its name: see [`first_shared`].
 
-use pam_core::recording::{Recording, share_samples};
-use rayon::prelude::*;
+use pam_core::recording::{Recording, first_shared, repeats_itself};
 
 use crate::error::IdentifyError;
 
@@ -15,17 +14,9 @@ use crate::error::IdentifyError;
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn check(estimation: &[Recording], holdout: &[Recording]) -> Result<(), IdentifyError> {
     let all: Vec<&Recording> = estimation.iter().chain(holdout).collect();
-    let pairs: Vec<(usize, usize)> =
-        (0..all.len()).flat_map(|second| (0..second).map(move |first| (first, second))).collect();
-    let shared: Result<Vec<bool>, IdentifyError> = pairs
-        .par_iter()
-        .map(|&(first, second)| {
-            share_samples(all[first], all[second])
-                .map_err(|reason| IdentifyError::Samples { path: all[second].path.clone(), reason })
-        })
-        .collect();
-    let Some(place) = shared?.into_iter().position(|shared| shared) else { return Ok(()) };
-    let (first, second) = pairs[place];
+    let shared = first_shared(&all);
+    let shared = shared.map_err(|(index, reason)| IdentifyError::Samples { path: all[index].path.clone(), reason })?;
+    let Some((first, second)) = shared else { return Ok(()) };
     let (path, other) = (all[second].path.clone(), all[first].path.clone());
     let n_estimation = estimation.len();
     Err(match (first < n_estimation, second < n_estimation) {
@@ -33,4 +24,27 @@ pub fn check(estimation: &[Recording], holdout: &[Recording]) -> Result<(), Iden
         (true, false) => IdentifyError::HeldOutAndFitted { path, other },
         (false, false) => IdentifyError::HeldOutTwice { path, other },
     })
+}
+
+/// What to say of recordings of which a stretch stands in them once more: a word for each.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn repeated<'a>(recordings: impl Iterator<Item = &'a Recording>) -> Result<Vec<String>, IdentifyError> {
+    let mut words = Vec::new();
+    for recording in recordings {
+        let repeated = repeats_itself(recording);
+        let repeated = repeated.map_err(|reason| IdentifyError::Samples { path: recording.path.clone(), reason })?;
+        words.extend(repeated.map(|found| {
+            format!(
+                "{}: rows from {} on stand there once more from {} on, noise and all ({} % of the recording): they count twice, and \
+                 standard errors are too small; cut one of the two out",
+                recording.path,
+                found.row + 1,
+                found.again + 1,
+                found.percent
+            )
+        }));
+    }
+    Ok(words)
 }
