@@ -55,7 +55,7 @@ fn end() {
     std::process::exit(130);
 }
 
-/// The same for Ctrl-\\, a spent share of the processor and what schedulers and timers send; and a file that grows beyond what the
+/// The same for Ctrl-\\, a spent share of the processor and whatever else ends a program from outside and can be waited for; and a file that grows beyond what the
 /// system allows becomes an error of the write instead of a signal that ends the program on the spot.
 ///
 /// All are kept from every thread (those to come inherit it), and one thread waits for the first.
@@ -63,7 +63,14 @@ fn end() {
 fn end_on_quit() {
     use nix::sys::signal::{SigSet, Signal};
     let mut awaited = SigSet::empty();
-    for signal in [Signal::SIGQUIT, Signal::SIGXCPU, Signal::SIGALRM, Signal::SIGUSR1, Signal::SIGUSR2] {
+    let of_users_and_limits = [Signal::SIGQUIT, Signal::SIGXCPU, Signal::SIGUSR1, Signal::SIGUSR2];
+    let of_timers_and_devices = [Signal::SIGALRM, Signal::SIGVTALRM, Signal::SIGPROF, Signal::SIGIO];
+    for signal in of_users_and_limits.into_iter().chain(of_timers_and_devices) {
+        awaited.add(signal);
+    }
+    // A power supply that fails, and a fault of a coprocessor that no processor has any more.
+    #[cfg(target_os = "linux")]
+    for signal in [Signal::SIGPWR, Signal::SIGSTKFLT] {
         awaited.add(signal);
     }
     let mut kept = awaited;
