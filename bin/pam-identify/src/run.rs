@@ -9,7 +9,8 @@ use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
 use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
 use pam_core::recording::Recording;
-use pam_identification::faults::{disagree, reading, spikes, twice, zero};
+use pam_identification::faults::apart::{self, Apart};
+use pam_identification::faults::{disagree, noise, reading, spikes, twice, zero};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
@@ -93,6 +94,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let prepared = found.estimation.iter().chain(&found.validation);
     let recordings: Vec<_> = prepared.map(|prepared| (&prepared.recording, &prepared.quality)).collect();
     artifact.warnings.extend(disagree::notes(&recordings, &found.muscle)?);
+    artifact.warnings.extend(noise::words(found.estimation.iter().chain(&found.validation), &found.model, None)?);
+    artifact.warnings.extend(twice::repeated(recordings.iter().map(|(recording, _)| *recording))?);
+    let apart = apart::find(&found)?;
+    artifact.warnings.extend(apart.as_ref().map(Apart::words));
     // Instruments are suspected where a fit ends at no muscle; what they explain is searched for then.
     if implausible(&found).is_some() {
         artifact.warnings.extend(zero::explain(&found)?);
@@ -124,7 +129,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         console.warn(warning);
     }
     write(&console, &found, &artifact, out, figure_out)?;
-    Ok(verdict(args, &console, &found, &artifact))
+    Ok(verdict(args, &console, &found, &artifact, apart.as_ref()))
 }
 
 /// Publishes model and figure together.
@@ -146,7 +151,13 @@ fn write(
     Ok(publish(outputs, console)?)
 }
 
-fn verdict(args: &Args, console: &Console, found: &Identified, artifact: &ModelArtifact) -> Verdict {
+fn verdict(
+    args: &Args,
+    console: &Console,
+    found: &Identified,
+    artifact: &ModelArtifact,
+    apart: Option<&Apart>,
+) -> Verdict {
     let judged = artifact.fit.validation.unwrap_or(artifact.fit.estimation);
     if let Some(limit) = args.max_rmse_n.filter(|&limit| judged.rmse_n > limit) {
         console.warn(format!("rejected: RMSE {:.3} N is above --max-rmse-n {limit}", judged.rmse_n));
@@ -154,6 +165,13 @@ fn verdict(args: &Args, console: &Console, found: &Identified, artifact: &ModelA
     }
     if !artifact.search.converged && !args.no_polish {
         console.warn("rejected: the search did not converge; try more --starts or --iterations");
+        return Verdict::Rejected;
+    }
+    if apart.is_some_and(|apart| !apart.is_tare()) && !args.accept_implausible {
+        console.warn(
+            "rejected: one model cannot follow recordings that contradict one another; set the instrument right or leave the \
+             recording out, or take the model as it is with --accept-implausible",
+        );
         return Verdict::Rejected;
     }
     if let Some(reason) = implausible(found).filter(|_| !args.accept_implausible) {

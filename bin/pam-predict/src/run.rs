@@ -10,10 +10,11 @@ use pam_core::effects::{AugmentedModel, Kind};
 use pam_core::recording::ReadOptions;
 use pam_identification::band::PredictiveBand;
 use pam_identification::evaluate::{NoForceAt, evaluate_augmented, noise_floor_n, without_force};
-use pam_identification::faults::{reading, spikes};
+use pam_identification::faults::{noise, reading, spikes, twice};
 use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare, prepare_plausible};
 use pam_identification::prediction::{Prediction, predict};
 use pam_identification::prepare::Prepared;
+use pam_identification::report::out_of_range;
 use pam_report::PictureFormat;
 
 use crate::args::Args;
@@ -46,6 +47,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let mut prepared =
         if args.accept_implausible { prepare(recording, &artifact)? } else { prepare_plausible(recording, &artifact)? };
     if let Some(words) = spikes::warning(&prepared.recording, &prepared.quality)? {
+        console.warn(words);
+    }
+    for words in twice::repeated(std::iter::once(&prepared.recording))? {
+        console.warn(words);
+    }
+    for words in out_of_range(|| std::iter::once(&prepared)) {
         console.warn(words);
     }
     for words in outside(&prepared, &artifact.domain) {
@@ -113,6 +120,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         statistics.rmse_all_n,
         statistics.n_samples + statistics.n_unsettled
     ));
+    for words in noise::words(std::iter::once(&prepared), model.base(), Some(reading::own_n(&artifact)))? {
+        console.warn(words);
+    }
     if let Some(words) = reading::missed(&prepared, &artifact, &model, statistics.rmse_n)? {
         console.warn(words);
     }

@@ -415,3 +415,21 @@ fn a_figure_is_what_its_ending_says() {
     let said = bench.refusal("log.csv --model model.json --figure a.bmp");
     assert!(said.contains("figures are SVG, PNG or PDF; name it a.png"), "{said}");
 }
+
+#[test]
+fn what_is_wrong_with_the_recording_itself_is_said() {
+    let bench = Bench::new();
+    let header = "time_s,pressure_kPa,length_mm,force_N";
+    let said = |change: &dyn Fn(usize, [f64; 4]) -> [f64; 4]| {
+        bench.file("bad.csv", &reworked(header, change));
+        let output = bench.run("bad.csv --model model.json --out out.csv");
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let hum = said(&|_, [t, p, l, f]| [t, p, l, f + 200.0 * (62.8 * t).sin()]);
+    assert!(hum.contains("bad.csv: the noise of its sensors alone leaves"), "{hum}");
+    let clipped = said(&|_, [t, p, l, f]| [t, p, l, f.min(150.0)]);
+    assert!(clipped.contains("force is stuck at its high end (150.0000 N)"), "{clipped}");
+    let as_is = said(&|_, values| values);
+    assert!(!as_is.contains("stuck") && !as_is.contains("noise of its sensors"), "{as_is}");
+}

@@ -382,7 +382,7 @@ impl Diagnosis {
                 before.rmse_n, after.rmse_n
             ));
         }
-        warnings.extend(self.too_short.iter().cloned());
+        warnings.extend(self.noticed.iter().chain(&self.too_short).cloned());
         if self.holdout.is_empty() {
             warnings.push(
                 "no recording was held out: name one with --holdout to see what the effects are worth".to_owned(),

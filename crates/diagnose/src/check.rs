@@ -1,11 +1,13 @@
 //! Recordings that a diagnosis cannot use are refused before anything is fitted.
 
 use pam_core::artifact::ModelArtifact;
+use pam_core::force::ForceModel;
 use pam_core::quality::ChannelQuality;
 use pam_core::recording::Recording;
 use pam_identification::error::IdentifyError;
 use pam_identification::faults;
 use pam_identification::prepare::{Gated, Prepared, direct, gate};
+use pam_identification::report::out_of_range;
 
 use crate::error::DiagnoseError;
 use crate::track::{FOLDS, Track};
@@ -77,6 +79,20 @@ fn channels(gated: &Gated) -> Result<(), DiagnoseError> {
         }
     }
     Ok(())
+}
+
+/// What there is to say of the recordings themselves, whatever the diagnosis is.
+pub(crate) fn noticed(
+    estimation: &[Prepared],
+    holdout: &[Prepared],
+    base: &ForceModel,
+    model: &ModelArtifact,
+) -> Result<Vec<String>, DiagnoseError> {
+    let all = || estimation.iter().chain(holdout);
+    let mut words = out_of_range(all);
+    words.extend(faults::noise::words(all(), base, Some(faults::reading::own_n(model)))?);
+    words.extend(faults::twice::repeated(all().map(|prepared| &prepared.recording))?);
+    Ok(words)
 }
 
 /// Refuses a track that is too short to hold anything out of.

@@ -70,6 +70,8 @@ pub struct Diagnosis {
     pub empirical: Option<Empirical>,
     /// Names that the recordings are too short or too coarse for, in words.
     pub too_short: Vec<String>,
+    /// What was noticed of the recordings themselves, in words.
+    pub noticed: Vec<String>,
     /// Share of the mismatch that is left.
     pub unexplained_share: f64,
     /// Where structure is left.
@@ -275,6 +277,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         effects,
         empirical,
         too_short,
+        noticed: check::noticed(&estimation, &holdout, &found.base.state.model, &model)?,
         unexplained_share: sizes.share_left(),
         unexplained,
         implausible,

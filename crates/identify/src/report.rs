@@ -9,10 +9,14 @@ use pam_optim::summary::Summary;
 
 use crate::faults::lag::Lag;
 use crate::identify::Identified;
+use crate::prepare::Prepared;
 use crate::search_space::Free;
 
 /// Correlation beyond which two estimates are said to be one.
 const TWINS: f64 = 0.98;
+
+/// Share of the samples at an end of a channel's range that is worth a word; those that are not counted always are.
+const STUCK: f64 = 0.005;
 
 /// Cosines between the forces of `C₁₀` and `C₀₁`, and of the two frictions, over the recordings.
 pub fn twin_cosines(summary: &Summary) -> [f64; 2] {
@@ -155,10 +159,9 @@ pub fn composites(found: &Identified) -> Vec<CompositeEntry> {
     entries
 }
 
-/// What a person should know before using the model.
-pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<String> {
+/// Channels that are stuck at an end of their range, in words.
+pub fn out_of_range<'a, I: Iterator<Item = &'a Prepared>>(prepared: impl Fn() -> I) -> Vec<String> {
     let mut warnings = Vec::new();
-    let prepared = || found.estimation.iter().chain(&found.validation);
     for (name, unit) in [("pressure", "Pa"), ("length", "m"), ("force", "N")] {
         for end in ["low", "high"] {
             let stuck: Vec<(&str, f64, f64, bool)> = prepared()
@@ -169,7 +172,7 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
                     } else {
                         (channel.clipped_high_share, channel.highest, channel.ends_high())
                     };
-                    (share > 0.005).then_some((prepared.recording.path.as_str(), share, value, beyond))
+                    (share > STUCK || beyond).then_some((prepared.recording.path.as_str(), share, value, beyond))
                 })
                 .collect();
             if let Some((path, share, value, beyond)) =
@@ -185,6 +188,13 @@ pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<St
             }
         }
     }
+    warnings
+}
+
+/// What a person should know before using the model.
+pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<String> {
+    let prepared = || found.estimation.iter().chain(&found.validation);
+    let mut warnings = out_of_range(prepared);
     if found.told_by_validation {
         warnings.push(format!(
             "in no recording that was fitted does the pressure move while the length rests, so that what was held out decides \
@@ -298,6 +308,12 @@ const FAR: f64 = 0.5;
 /// A constant force that this share of the range of the force explains: a tare that nobody set to zero.
 const TARE_SHARE: f64 = 0.02;
 
+/// Share of the variation of the force that a model of it must explain at least; and, for it to be said, what it leaves: times the
+/// noise floor, and of the range of the force. A force that hardly varies leaves little to explain.
+const EXPLAINED: f64 = 0.5;
+const BEYOND_NOISE: f64 = 5.0;
+const OF_RANGE: f64 = 0.1;
+
 /// Why the parameters are not those of a muscle as eq. 11 describes it, in words; none where they may be.
 ///
 /// One parameter beside what muscles have may be a tare, a datum or a muscle of its own kind, which a warning says. A model
@@ -310,6 +326,16 @@ pub fn implausible(found: &Identified) -> Option<String> {
     };
     let range_n =
         ends(f64::max, f64::NEG_INFINITY, |force| force.highest) - ends(f64::min, f64::INFINITY, |force| force.lowest);
+    if let Some(fit) = &found.estimation_fit.together
+        && fit.fit_percent < 100.0 * EXPLAINED
+        && fit.rmse_n > BEYOND_NOISE * found.noise_floor_n
+        && fit.rmse_n > OF_RANGE * range_n
+    {
+        return Some(format!(
+            "which leaves {:.1} N of a force that varies by {range_n:.0} N (fit {:.0} %)",
+            fit.rmse_n, fit.fit_percent
+        ));
+    }
     let (mut odd, mut far) = (Vec::new(), Vec::new());
     for (index, &free) in found.space.free.iter().enumerate() {
         let (value, stderr, at_bound) = coordinate(found, index);

@@ -10,6 +10,8 @@
 //!
 //! is fitted to the rest of the recording. What it leaves of the force wanders as friction and misfit make it, and wanders much
 //! further along a channel that froze while the muscle went on. A run along which nothing moves is harmless, whatever made it.
+//! A force that stands at the low end of its range is slack, or a load cell whose plug came off: the map says whether the muscle
+//! should have pulled there.
 
 use std::io;
 use std::ops::Range;
@@ -31,6 +33,8 @@ const LEAST_TURNS: f64 = 0.3;
 /// that a valve held, and 7.5, the least of 28 other halves of files that froze: any limit in between tells the same. Runs of coarse or
 /// filtered channels in order come to 0.05 and 0.23.
 const WANDERS: f64 = 3.0;
+/// Share of the largest force that a muscle must have along a run at the low end of a force, for that to be no slack.
+const PULLS: f64 = 0.12;
 /// Samples of a run that are looked at, about, and shares of them left out at either end: spikes and noise.
 const LOOKED_AT: usize = 64;
 const LEFT_OUT: f64 = 0.05;
@@ -46,8 +50,9 @@ struct Runs {
     value: f64,
     start: usize,
     rows: usize,
-    /// The longest so far that is at no end of the range.
+    /// The longest so far that is at no end of the range, and the longest at its low end.
     longest: (f64, usize, usize),
+    lowest_run: (f64, usize, usize),
     n: usize,
     equal: usize,
     bends: usize,
@@ -84,12 +89,22 @@ impl Runs {
         if self.rows > self.longest.2 && !at_end {
             self.longest = (self.value, self.start, self.rows);
         }
+        if self.rows > self.lowest_run.2 && self.value <= self.lowest {
+            self.lowest_run = (self.value, self.start, self.rows);
+        }
     }
 
     /// The run, where the rest of the channel says that it cannot be chance.
-    fn frozen(mut self) -> Option<(f64, usize, usize)> {
-        self.close();
-        let (value, start, rows) = self.longest;
+    fn frozen(&self) -> Option<(f64, usize, usize)> {
+        self.beside(self.longest)
+    }
+
+    /// That at the low end of the range, likewise.
+    fn frozen_low(&self) -> Option<(f64, usize, usize)> {
+        self.beside(self.lowest_run)
+    }
+
+    fn beside(&self, (value, start, rows): (f64, usize, usize)) -> Option<(f64, usize, usize)> {
         let rest = (self.n.saturating_sub(rows)) as f64;
         let equal = self.equal.saturating_sub(rows - rows.min(1)) as f64;
         let flickers = rest > ROWS as f64
@@ -127,15 +142,20 @@ pub fn find(recording: &Recording) -> io::Result<Option<Fault>> {
                 runs.push(row, value);
             }
         }
-        let Some((value, start, rows)) = runs.frozen() else { continue };
+        runs.close();
         let at_s = |row: usize| -> io::Result<f64> {
             let chunk = recording.samples.chunk(row / pam_core::recording::CHUNK_ROWS)?;
             Ok(chunk.time_s()[row - chunk.first_row()])
         };
-        let (from_s, to_s) = (at_s(start)?, at_s(start + rows - 1)?);
-        if to_s - from_s >= LASTS_S && moved(recording, start..start + rows)? {
-            let value = format!("{:.3} {unit}", value * scale);
-            return Ok(Some(Fault::Frozen { path: recording.path.clone(), channel, value, from_s, to_s, rows }));
+        // At its low end a force is slack, unless pressure and length say that the muscle pulls.
+        let low = runs.frozen_low().filter(|_| channel == "force");
+        for (run, is_low) in [(runs.frozen(), false), (low, true)] {
+            let Some((value, start, rows)) = run else { continue };
+            let (from_s, to_s) = (at_s(start)?, at_s(start + rows - 1)?);
+            if to_s - from_s >= LASTS_S && moved(recording, start..start + rows, is_low.then_some(highest))? {
+                let value = format!("{:.3} {unit}", value * scale);
+                return Ok(Some(Fault::Frozen { path: recording.path.clone(), channel, value, from_s, to_s, rows }));
+            }
         }
     }
     Ok(None)
@@ -205,8 +225,9 @@ fn spread(values: &mut [f64]) -> f64 {
     values.get(values.len().saturating_sub(out + 1)).zip(values.get(out)).map_or(0.0, |(high, low)| high - low)
 }
 
-/// Whether the force, beside pressure and length, says that the muscle moved along `run`, of which one channel saw nothing.
-fn moved(recording: &Recording, run: Range<usize>) -> io::Result<bool> {
+/// Whether the force, beside pressure and length, says that the muscle moved along `run`, of which one channel saw nothing; where
+/// its largest force is given, also whether it pulled, as it did elsewhere at such pressures.
+fn moved(recording: &Recording, run: Range<usize>, largest_n: Option<f64>) -> io::Result<bool> {
     let stride = (run.len() / LOOKED_AT).max(1);
     let Some(map) = Map::of(recording, &run, stride)? else { return Ok(false) };
     let rows = recording.samples.n_rows();
@@ -215,12 +236,17 @@ fn moved(recording: &Recording, run: Range<usize>) -> io::Result<bool> {
     let window = run.len().min(most_elsewhere);
     let (mut along_n, mut windowed_n, mut elsewhere_n) = (Vec::new(), Vec::new(), 0.0_f64);
     let mut in_window = 0;
+    let (mut expected_n, mut along_pa, mut elsewhere_pa) = (Vec::new(), 0.0_f64, 0.0_f64);
     for chunk in recording.samples.chunks() {
         let chunk = chunk?;
         for row in chunk.rows() {
+            let pressure_pa = chunk.pressure_pa()[row - chunk.first_row()];
+            let highest_pa = if run.contains(&row) { &mut along_pa } else { &mut elsewhere_pa };
+            *highest_pa = highest_pa.max(pressure_pa);
             let residual_n = row.is_multiple_of(stride).then(|| map.residual_n(&chunk, row - chunk.first_row()));
             if run.contains(&row) {
                 along_n.extend(residual_n);
+                expected_n.extend(residual_n.map(|residual_n| chunk.force_n()[row - chunk.first_row()] - residual_n));
                 windowed_n.clear();
                 in_window = 0;
                 continue;
@@ -234,7 +260,12 @@ fn moved(recording: &Recording, run: Range<usize>) -> io::Result<bool> {
             }
         }
     }
-    Ok(spread(&mut along_n) > WANDERS * elsewhere_n)
+    let pulls = largest_n.is_none_or(|largest_n| {
+        expected_n.sort_unstable_by(f64::total_cmp);
+        let median_n = expected_n.get(expected_n.len() / 2).copied().unwrap_or(0.0);
+        along_pa <= elsewhere_pa && median_n > PULLS * largest_n
+    });
+    Ok(pulls && spread(&mut along_n) > WANDERS * elsewhere_n)
 }
 
 #[cfg(test)]
@@ -249,6 +280,7 @@ mod tests {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
         let mut runs = Runs { lowest, highest, value: f64::NAN, ..Runs::default() };
         values.iter().enumerate().for_each(|(row, &value)| runs.push(row, value));
+        runs.close();
         runs.frozen()
     }
 
@@ -314,5 +346,40 @@ mod tests {
                 assert_eq!((found, rows), (name, stands.len()));
             }
         }
+    }
+
+    #[test]
+    fn a_load_cell_whose_plug_came_off_reads_zero_and_a_slack_muscle_does_so_too() {
+        let model = crate::testing::model();
+        // Pulled to and fro and now and then vented; from `off` on the load cell shows zero, which is also where slack is.
+        let pulled = |off: usize, vented: bool| {
+            let time_s: Vec<f64> = (0..8000).map(|row| 0.01 * f64::from(row)).collect();
+            let flicker = |row: usize| (row * 7919 % 101) as f64 / 101.0;
+            let vent = |t: f64| vented && (30.0..45.0).contains(&t);
+            let pressure_pa: Vec<f64> = time_s
+                .iter()
+                .enumerate()
+                .map(|(row, &t)| if vent(t) { 0.0 } else { 2.5e5 + 1e5 * (1.1 * t).sin() + 3e3 * flicker(row) })
+                .collect();
+            let length_m: Vec<f64> = time_s
+                .iter()
+                .enumerate()
+                .map(|(row, t)| 0.24 + 0.015 * (0.7 * t).sin() + 1e-4 * flicker(row))
+                .collect();
+            let force_n: Vec<f64> = (0..time_s.len())
+                .map(|row| {
+                    let direction = if (0.7 * time_s[row]).cos() > 0.0 { -1.0 } else { 1.0 };
+                    let pulls_n = model.force_n(pressure_pa[row], length_m[row], direction);
+                    if row >= off || vent(time_s[row]) { 0.0 } else { (pulls_n + 3.0 * flicker(row)).max(0.0) }
+                })
+                .collect();
+            let samples = Samples::from_columns(&time_s, &pressure_pa, &length_m, &force_n);
+            let segments = vec![0..samples.n_rows(); 1];
+            let (sha256, repairs) = (String::new(), Repairs::default());
+            let path = "pulled.csv".to_owned();
+            find(&Recording { path, sha256, samples, segments, repairs, ignored_columns: Vec::new() }).unwrap()
+        };
+        assert!(matches!(pulled(6000, false), Some(Fault::Frozen { channel: "force", rows: 2000, .. })));
+        assert_eq!(pulled(8000, true), None, "vented and slack");
     }
 }

@@ -30,6 +30,9 @@ const WORTH: f64 = 0.15;
 /// Every so-many-th row takes part in the first look, which must find half of what is worth a word.
 const SKIMMED: usize = 4;
 
+/// How often the play of the finest length that of the coarsest may be.
+const COARSER: f64 = 8.0;
+
 /// A channel that the force lags behind (or runs ahead of, if negative).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lag {
@@ -69,6 +72,13 @@ impl Window {
 /// # Errors
 /// Where samples cannot be read back.
 pub fn find(recordings: &[Prepared], columns: &ForceColumns) -> std::io::Result<Vec<Lag>> {
+    // One threshold of the direction holds for all: where one recording is so much coarser than another that directions come
+    // late by it in the other, that would be taken for a lag.
+    let plays = || recordings.iter().filter_map(|prepared| Some(prepared.quality.channel("length")?.play_threshold()));
+    let finest_m = plays().filter(|play_m| *play_m > 0.0).fold(f64::INFINITY, f64::min);
+    if plays().any(|play_m| play_m > COARSER * finest_m) {
+        return Ok(Vec::new());
+    }
     let lags: std::io::Result<Vec<Option<Lag>>> = [Shifted::Pressure, Shifted::Length]
         .into_par_iter()
         .map(|shifted| {

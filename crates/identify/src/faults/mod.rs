@@ -4,14 +4,16 @@
 //! [`spikes`] and [`frozen`] find samples that no muscle makes; [`scale`] finds units that ranges do not show, [`zero`], after a fit,
 //! a gauge whose zero is elsewhere;
 //! [`channels`] finds swapped channels and a force of the wrong sign; [`disagree`] finds recordings that contradict one another;
-//! [`twice`] finds a recording that is there twice; [`lag`] finds a channel that lags the others; [`reading`] says what an
-//! instrument would have to read wrong where a model that is known misses a recording. All but the last two refuse the recording,
+//! [`apart`], after a fit, one recording of several whose instrument reads otherwise; [`twice`] finds a recording that is there twice; [`noise`] says where noise hides everything; [`lag`] finds a channel that lags the others; [`reading`] says what an
+//! instrument would have to read wrong where a model that is known misses a recording. All but the last two and [`apart`] refuse the recording,
 //! because a fit would absorb the fault in its parameters.
 
+pub mod apart;
 pub mod channels;
 pub mod disagree;
 pub mod frozen;
 pub mod lag;
+pub mod noise;
 pub mod ranges;
 pub mod reading;
 pub mod scale;

@@ -12,6 +12,7 @@ use pam_optim::polish::descend;
 use pam_optim::summary::{BLOCK_ROWS, Summary};
 
 use crate::identify::Identified;
+use crate::prepare::Prepared;
 use crate::problem::ForceProblem;
 
 /// Shifts that are looked at, in Pa, and the distance between two of them.
@@ -27,7 +28,7 @@ const ATMOSPHERE_PA: f64 = 101.3e3;
 const WEATHER_PA: f64 = 15e3;
 
 /// Pressure, length, direction and force of samples that count.
-type Sample = (f64, f64, f64, f64);
+pub(super) type Sample = (f64, f64, f64, f64);
 
 /// What a shift of the pressure explains, in words; none where it explains little.
 ///
@@ -87,29 +88,39 @@ pub fn explain(found: &Identified) -> io::Result<Option<String>> {
 }
 
 fn samples(found: &Identified) -> io::Result<Vec<Sample>> {
+    let stride = stride(found);
+    let each: io::Result<Vec<Vec<Sample>>> =
+        found.estimation.iter().map(|prepared| samples_of(prepared, stride)).collect();
+    Ok(each?.concat())
+}
+
+/// Every so-many-th row takes part.
+pub(super) fn stride(found: &Identified) -> usize {
     let n_rows: usize = found.estimation.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
-    let stride = (n_rows / SAMPLES).max(1);
+    (n_rows / SAMPLES).max(1)
+}
+
+/// Every `stride`-th counted sample of a recording.
+pub(super) fn samples_of(prepared: &Prepared, stride: usize) -> io::Result<Vec<Sample>> {
     let mut samples = Vec::new();
-    for prepared in &found.estimation {
-        for chunk in prepared.recording.samples.chunks() {
-            let chunk = chunk?;
-            for row in chunk.rows().filter(|row| row.is_multiple_of(stride) && prepared.direction.is_settled(*row)) {
-                let here = row - chunk.first_row();
-                let sign = prepared.direction.sign(row);
-                samples.push((chunk.pressure_pa()[here], chunk.length_m()[here], sign, chunk.force_n()[here]));
-            }
+    for chunk in prepared.recording.samples.chunks() {
+        let chunk = chunk?;
+        for row in chunk.rows().filter(|row| row.is_multiple_of(stride) && prepared.direction.is_settled(*row)) {
+            let here = row - chunk.first_row();
+            let sign = prepared.direction.sign(row);
+            samples.push((chunk.pressure_pa()[here], chunk.length_m()[here], sign, chunk.force_n()[here]));
         }
     }
     Ok(samples)
 }
 
-/// RMSE of the fit to pressures that are lower by a shift, in N.
-fn left_n(found: &Identified, columns: &ForceColumns, samples: &[Sample], shift_pa: f64) -> f64 {
+/// The samples that eq. 11 has a force for, in one triangle.
+pub(super) fn summary_of(columns: &ForceColumns, samples: impl Iterator<Item = Sample>) -> Summary {
     let mut summary = Summary::new(N_COLUMNS);
     let mut block = vec![0.0; BLOCK_ROWS * (N_COLUMNS + 1)];
     let mut filled = 0;
-    for &(pressure_pa, length_m, direction, force_n) in samples {
-        let row = columns.row(pressure_pa - shift_pa, length_m, direction);
+    for (pressure_pa, length_m, direction, force_n) in samples {
+        let row = columns.row(pressure_pa, length_m, direction);
         if !row.iter().all(|value| value.is_finite()) {
             continue;
         }
@@ -123,13 +134,25 @@ fn left_n(found: &Identified, columns: &ForceColumns, samples: &[Sample], shift_
         }
     }
     summary.fold_part(&mut block, filled);
+    summary
+}
+
+/// RMSE of the fit to the samples of a triangle, in N.
+pub(super) fn fitted_n(found: &Identified, columns: &ForceColumns, summary: &Summary) -> f64 {
     if summary.n_rows() == 0 {
         return f64::INFINITY;
     }
-    let problem = ForceProblem { summary: &summary, columns, space: &found.space, steps: &[] };
+    let problem = ForceProblem { summary, columns, space: &found.space, steps: &[] };
     // From the middle of the box: where the fit ended it may lean on a wall.
     let modulus_pa = found.model.strand_modulus_pa();
     let center: Vec<f64> =
         (0..found.space.free.len()).map(|index| found.space.nominal_coordinate(index, modulus_pa)).collect();
     (2.0 * descend(&problem, &center).cost).sqrt()
+}
+
+/// RMSE of the fit to pressures that are lower by a shift, in N.
+fn left_n(found: &Identified, columns: &ForceColumns, samples: &[Sample], shift_pa: f64) -> f64 {
+    let shifted =
+        samples.iter().map(|&(pressure_pa, length_m, sign, force_n)| (pressure_pa - shift_pa, length_m, sign, force_n));
+    fitted_n(found, columns, &summary_of(columns, shifted))
 }
