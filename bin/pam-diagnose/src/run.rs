@@ -148,18 +148,28 @@ impl Outputs {
             let page = page::page(artifact, [&found.model, augmented], own, traces(found, REPORT_SAMPLES)?, provenance);
             outputs.push((output, pam_report::diagnosis_page(&page)?.into_bytes()));
         }
+        let mut earlier = None;
         match (self.next, &found.next_experiment) {
             (Some(output), Some((_, setpoints))) => {
                 let mut csv = Vec::new();
                 setpoints.write_csv(&mut csv)?;
                 outputs.push((output, csv));
             }
-            (Some(output), None) => console.note(format!(
-                "{} was not written: nothing is in question that a recording would decide",
-                output.path().display()
-            )),
+            (Some(output), None) => {
+                let path = output.path().to_owned();
+                // Of an earlier diagnosis: whoever plays it on the rig would record what nobody asks for any more.
+                let stands = path.symlink_metadata().is_ok_and(|found| found.is_file());
+                let what = if stands { "was removed, as it was of an earlier diagnosis" } else { "was not written" };
+                console
+                    .note(format!("{} {what}: nothing is in question that a recording would decide", path.display()));
+                earlier = stands.then_some(path);
+            }
             (None, _) => {}
         }
-        Ok(publish(outputs, console)?)
+        publish(outputs, console)?;
+        if let Some(path) = earlier {
+            std::fs::remove_file(&path).with_context(|| format!("cannot remove {}", path.display()))?;
+        }
+        Ok(())
     }
 }
