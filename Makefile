@@ -88,7 +88,7 @@ hard-use: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/hard-use --bin $(BIN)
 
-# Eleven hundred inputs, each a little wrong: exit code, message and files of every one.
+# Twelve hundred inputs, each a little wrong: exit code, message and files of every one.
 odd-inputs: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/odd-inputs --bin $(BIN)
