@@ -6,7 +6,7 @@
 use pam_core::force::ForceModel;
 
 use crate::error::IdentifyError;
-use crate::evaluate::noise_floor_n;
+use crate::evaluate::{evaluate, noise_floor_n};
 use crate::prepare::Prepared;
 
 /// Times the noise of the quietest, or of what a model was identified on, beyond which a recording is said to be noisy, and the
@@ -15,6 +15,14 @@ const NOISIER: f64 = 5.0;
 const LEAST_SHARE: f64 = 0.01;
 /// Share of the range of the force beyond which noise is said, whatever the others have.
 const SHARE: f64 = 0.03;
+/// Share of the noise floor that a model leaves at least where the floor is noise: steps and haste look like it, and a model follows
+/// them.
+const LEAVES: f64 = 1.0 / 3.0;
+
+/// Whether a noise floor can be that of sensors, where a model leaves `left_n`: what is noise, no model follows.
+pub fn is_noise(floor_n: f64, left_n: f64) -> bool {
+    left_n >= LEAVES * floor_n
+}
 
 /// What to say of recordings that are much noisier than `own_n`, which the sensors leave of the recordings of the model, or than
 /// the quietest of them where that is not known: a word for each.
@@ -29,8 +37,13 @@ pub fn words<'a>(
     let mut floors = Vec::new();
     for prepared in recordings {
         let Some(force) = prepared.quality.channel("force") else { continue };
-        let floor_n = noise_floor_n(std::slice::from_ref(prepared), model)?;
-        floors.push((prepared.recording.path.as_str(), floor_n, force.highest - force.lowest));
+        let alone = std::slice::from_ref(prepared);
+        let floor_n = noise_floor_n(alone, model)?;
+        // Where the model has no force there is nothing to compare with, and other words are found for that.
+        let left_n = evaluate(alone, model).map_or(f64::INFINITY, |evaluation| evaluation.each[0].rmse_n);
+        if is_noise(floor_n, left_n) {
+            floors.push((prepared.recording.path.as_str(), floor_n, force.highest - force.lowest));
+        }
     }
     let quietest_n = floors.iter().map(|floor| floor.1).fold(f64::INFINITY, f64::min);
     let others_n = own_n.unwrap_or(quietest_n);

@@ -18,6 +18,7 @@ use pam_core::artifact::{InputRole, ModelArtifact};
 use pam_core::effects::AugmentedModel;
 use pam_core::force::ForceModel;
 
+use super::noise;
 use super::scale::unit_words;
 use crate::error::IdentifyError;
 use crate::evaluate::{Trace, noise_floor_n, trace_augmented};
@@ -125,6 +126,7 @@ pub fn missed(
     rmse_n: f64,
 ) -> Result<Option<String>, IdentifyError> {
     let floor_n = noise_floor_n(std::slice::from_ref(prepared), model.base())?;
+    let floor_n = if noise::is_noise(floor_n, rmse_n) { floor_n } else { 0.0 };
     // A worse sensor is no other muscle.
     if !is_missed(artifact, rmse_n, floor_n) {
         return Ok(None);
