@@ -83,6 +83,16 @@ fn a_fit_that_explains_less_than_half_of_the_force_is_rejected() {
 }
 
 #[test]
+fn a_fit_that_leaves_far_more_than_noise_is_said_to_do_so() {
+    let all = rows("isobaric-triangles");
+    let late = changed("isobaric-triangles", |row, [t, p, l, _]| [t, p, l, all[row.saturating_sub(100)][3]]);
+    let (_, said) = fitted(&late, &["isometric-ramps"], &[]);
+    assert!(said.contains(" times what noise of the sensors alone would leave"), "{said}");
+    let (_, said) = fitted(&all, &["isometric-ramps"], &[]);
+    assert!(!said.contains(" times what noise of the sensors"), "{said}");
+}
+
+#[test]
 fn noise_that_hides_everything_is_said_and_that_of_a_sensor_in_order_is_not() {
     let hum = changed("isobaric-triangles", |_, [t, p, l, f]| [t, p, l, f + 50.0 * (62.8 * t).sin()]);
     for others in [&[] as &[&str], &["isometric-ramps"]] {

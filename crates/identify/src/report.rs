@@ -195,6 +195,16 @@ pub fn out_of_range<'a, I: Iterator<Item = &'a Prepared>>(prepared: impl Fn() ->
 pub fn warnings(found: &Identified, lags: &[Lag], muscle: &MuscleFile) -> Vec<String> {
     let prepared = || found.estimation.iter().chain(&found.validation);
     let mut warnings = out_of_range(prepared);
+    if let Some(fit) = &found.estimation_fit.together
+        && fit.rmse_n > BEYOND_NOISE * found.noise_floor_n
+    {
+        warnings.push(format!(
+            "the model leaves {:.2} N, {:.0} times what noise of the sensors alone would leave: eq. 11 lacks physics of this muscle, \
+             or an instrument reads wrong; pam-diagnose tells which",
+            fit.rmse_n,
+            fit.rmse_n / found.noise_floor_n
+        ));
+    }
     if found.told_by_validation {
         warnings.push(format!(
             "in no recording that was fitted does the pressure move while the length rests, so that what was held out decides \
