@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Pressure (Pa) of a pam-inverse/1 file for lines of force (N), length (m) and direction (+1 contracting, -1 extending);
-a 1 behind it says that the point is outside the domain.  evaluate-inverse.py inverse.json < points.txt"""
+a 1 after it says that the point is outside the domain.  evaluate-inverse.py inverse.json < points.txt"""
 import json, math, sys
 
 ACTIVATIONS = {"tanh": math.tanh, "sigmoid": lambda z: 1 / (1 + math.exp(-z)), "linear": lambda z: z}

@@ -83,7 +83,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) matters_above_n: Option<f64>,
 
-    /// Most effects, or changes, that may be named.
+    /// Maximum number of effects, or changes, that may be named.
     #[arg(long, value_name = "N", default_value_t = MAX_EFFECTS as u32, value_parser = clap::value_parser!(u32).range(1..=10))]
     pub(crate) max_effects: u32,
 

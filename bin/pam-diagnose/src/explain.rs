@@ -1,5 +1,7 @@
 //! The catalogue on the terminal, and the figure of an effect.
 
+use std::ops::Range;
+
 use anyhow::Context as _;
 use pam_cli::{Console, Output, Verdict, publish, write_file};
 use pam_core::artifact::diagnosis::Coordinate;
@@ -60,7 +62,8 @@ fn text(page: &Page) -> String {
         text.push_str("\nConfused with\n");
     }
     for confusion in page.confused_with {
-        let words = format!("{}: {}. Told apart by {}.", confusion.id, ended(confusion.because), ended(confusion.test));
+        let words =
+            format!("{}: {}. Distinguished by {}.", confusion.id, ended(confusion.because), ended(confusion.test));
         text.push_str(&wrapped(&words, "  "));
         text.push('\n');
     }
@@ -98,8 +101,25 @@ fn figure_of(effect: &'static dyn Effect) -> anyhow::Result<String> {
     };
     let scaled = |values: &[f64], scale: f64| -> Vec<f64> { values.iter().map(|value| value * scale).collect() };
     let xs = scaled(&found.driven_values, driven_scale);
-    let series = |name: &str, xs: Vec<f64>, ys: Vec<f64>| SignatureSeries { name: name.to_owned(), xs, ys };
+    let is_chirp = found.cycles.is_some();
+    let series =
+        |name: &str, xs: Vec<f64>, ys: Vec<f64>| SignatureSeries { name: name.to_owned(), xs, ys, dots: false };
     let residual_n = found.with_n.iter().zip(&found.without_n).map(|(with, without)| with - without).collect();
+    let forces = match found.cycles {
+        None => {
+            vec![series("eq. 11", xs.clone(), found.without_n), series("with the effect", xs, found.with_n)]
+        }
+        // Every cycle of a chirp over the others is a blot.
+        Some([slow, fast]) => {
+            let of = |rows: &Range<usize>, values: &[f64]| values[rows.clone()].to_vec();
+            vec![
+                series("eq. 11", of(&slow, &xs), of(&slow, &found.without_n)),
+                series("with the effect, slow", of(&slow, &xs), of(&slow, &found.with_n)),
+                series("fast", of(&fast, &xs), of(&fast, &found.with_n)),
+            ]
+        }
+    };
+    let residual = series("residual", scaled(&found.coordinate_values, scale), residual_n);
     let page = effect.page();
     Ok(signature_figure(&SignatureFigure {
         title: format!("{}: {}", capitalized(page.name), found.path),
@@ -108,16 +128,13 @@ fn figure_of(effect: &'static dyn Effect) -> anyhow::Result<String> {
                 title: "Force".to_owned(),
                 x_label: driven_label.to_owned(),
                 y_label: "force (N)".to_owned(),
-                series: vec![
-                    series("eq. 11", xs.clone(), found.without_n),
-                    series("with the effect", xs, found.with_n),
-                ],
+                series: forces,
             },
             SignaturePanel {
-                title: "What eq. 11 leaves, before any refit".to_owned(),
+                title: "Residual of eq. 11, not refitted".to_owned(),
                 x_label: label.to_owned(),
                 y_label: "residual (N)".to_owned(),
-                series: vec![series("residual", scaled(&found.coordinate_values, scale), residual_n)],
+                series: vec![SignatureSeries { dots: is_chirp, ..residual }],
             },
         ],
     })?)

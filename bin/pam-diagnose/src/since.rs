@@ -1,23 +1,25 @@
 //! Later recordings and a baseline in, what has changed out.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure};
 use pam_cli::{Console, Output, publish, read_recordings};
 use pam_core::artifact::change::{Change, ChangeArtifact, ChangeConfig, ChangeVerdict, Compared, SCHEMA};
 use pam_core::artifact::{ArtifactError, Input, InputRole, ModelArtifact, Tool, readable_json};
-use pam_diagnosis::since::{Request, changes, check, words};
+use pam_diagnosis::since::{LaterTrace, Request, changes, check, words};
 use pam_report::number::{engineering, engineering_with_stderr, significant};
 use pam_report::text::wrapped;
-use pam_report::{ChangePage, PageChange, PageCompared, Table, change_page};
+use pam_report::{ChangePage, PageAppendix, PageChange, PageCompared, PageInput, PageRecording, Table, change_page};
 
 use crate::args::Args;
+use crate::page::short_name;
+use crate::provenance::Provenance;
 
 pub(crate) fn since(args: &Args, console: &Console, path: &Path) -> anyhow::Result<pam_cli::Verdict> {
     let from_stdin = args.logs.iter().filter(|path| path.as_os_str() == "-").count();
     ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
     let inputs = || args.logs.iter().chain(&args.since).chain(&args.model).chain(&args.read.channels);
-    let open = |path: &Option<std::path::PathBuf>| -> anyhow::Result<Option<Output>> {
+    let open = |path: &Option<PathBuf>| -> anyhow::Result<Option<Output>> {
         let path = path.as_deref().filter(|_| !args.run.check);
         path.map(|path| Ok(Output::open(path)?.apart_from(inputs())?)).transpose()
     };
@@ -49,6 +51,7 @@ pub(crate) fn since(args: &Args, console: &Console, path: &Path) -> anyhow::Resu
         excluded: diagnose.excluded,
         accept_implausible: args.accept_implausible,
     };
+    let title = baseline.muscle_title();
     let request = Request { recordings, baseline, config: config.clone() };
     if args.run.check {
         check(request)?;
@@ -79,7 +82,8 @@ pub(crate) fn since(args: &Args, console: &Console, path: &Path) -> anyhow::Resu
         outputs.push((output, readable_json(&artifact)?));
     }
     if let Some(output) = report {
-        outputs.push((output, change_page(&page(&artifact)).into_bytes()));
+        let appendix = appendix(&artifact, &title, Provenance::of_this_run(args.logs.iter().map(PathBuf::as_path)));
+        outputs.push((output, change_page(&page(&artifact, appendix, found.traces))?.into_bytes()));
     }
     publish(outputs, console)?;
     Ok(if artifact.verdict == ChangeVerdict::Unchanged {
@@ -153,10 +157,10 @@ fn text(artifact: &ChangeArtifact) -> String {
     let fit = &artifact.fit;
     let mut table = Table::new(["RMSE", "N"]);
     for (name, value) in [
-        ("model of then on its own recordings", fit.then_n),
-        ("as it was, on these", fit.as_then_n),
-        ("within its standard errors", fit.within_errors_n),
-        ("with what has changed", fit.now_n),
+        ("baseline, on its own recordings", fit.then_n),
+        ("baseline, on these", fit.as_then_n),
+        ("baseline, within its standard errors", fit.within_errors_n),
+        ("with the changes", fit.now_n),
         ("noise", fit.noise_floor_n),
     ] {
         table.row([name.to_owned(), significant(value, 3)]);
@@ -176,20 +180,25 @@ fn cells(compared: &Compared) -> [String; 3] {
     [compared.then.map_or("-".to_owned(), |then| engineering(then, unit, 3)), now, errors]
 }
 
-fn page(artifact: &ChangeArtifact) -> ChangePage {
+fn page(artifact: &ChangeArtifact, appendix: PageAppendix, traces: Vec<LaterTrace>) -> ChangePage {
     let compared = |compared: &Compared| {
         let [then, now, errors] = cells(compared);
         PageCompared { name: compared.name.clone(), then, now, standard_errors: errors }
     };
     let change = |change: &Change| PageChange {
-        said: words::said(change),
+        said: words::titled(change),
         numbers: change.differences.iter().map(compared).collect(),
         rmse_n: [change.evidence.rmse_without_n, change.evidence.rmse_with_n],
         alternatives: change.alternatives.clone(),
     };
+    let later = artifact.inputs.iter().filter(|input| input.role == InputRole::Estimation);
+    let recording = |(input, trace): (&Input, LaterTrace)| {
+        let LaterTrace { time_s, force_n, baseline_n, changed_n, counted } = trace;
+        PageRecording::over_time(short_name(&input.path), [time_s, force_n, baseline_n, changed_n], counted)
+    };
     let fit = &artifact.fit;
     ChangePage {
-        title: artifact.inputs.first().map_or(String::new(), |input| format!("What has changed since {}", input.path)),
+        title: artifact.inputs.first().map_or(String::new(), |input| format!("Changes since {}", input.path)),
         class: match artifact.verdict {
             ChangeVerdict::Unchanged => "consistent",
             ChangeVerdict::Changed => "explained",
@@ -200,19 +209,48 @@ fn page(artifact: &ChangeArtifact) -> ChangePage {
         statement: artifact.statement.clone(),
         changes: artifact.changes.iter().map(change).collect(),
         unchanged: artifact.unchanged.iter().map(compared).collect(),
-        residuals_n: vec![
-            ("The model of then on its own recordings".to_owned(), fit.then_n),
-            ("As it was, on the later ones".to_owned(), fit.as_then_n),
-            ("Within its standard errors".to_owned(), fit.within_errors_n),
-            ("With what has changed".to_owned(), fit.now_n),
-            ("Noise floor".to_owned(), fit.noise_floor_n),
-        ],
+        rmse_n: [fit.then_n, fit.as_then_n, fit.now_n],
+        noise_floor_n: fit.noise_floor_n,
+        share_compared: fit.share_compared,
+        names: if artifact.changes.is_empty() {
+            ["baseline", "within its standard errors"]
+        } else {
+            ["baseline", "with the changes"]
+        },
+        recordings: later.zip(traces).map(recording).collect(),
         candidates: artifact
             .candidates
             .iter()
             .map(|candidate| (candidate.id.clone(), candidate.log_ratio, candidate.rmse_n))
             .collect(),
-        inputs: artifact.inputs.iter().map(|input| (input.path.clone(), input.sha256.clone())).collect(),
+        appendix,
         warnings: artifact.warnings.clone(),
+    }
+}
+
+fn appendix(artifact: &ChangeArtifact, muscle: &str, provenance: Provenance) -> PageAppendix {
+    let input = |input: &Input| PageInput {
+        role: match input.role {
+            InputRole::Model => "baseline",
+            InputRole::Estimation => "later",
+            _ => "channels",
+        }
+        .to_owned(),
+        path: input.path.clone(),
+        sha256: input.sha256.clone(),
+    };
+    let excluded = &artifact.config.excluded;
+    let excluded = if excluded.is_empty() { "none".to_owned() } else { excluded.join(", ") };
+    PageAppendix {
+        tool: format!("{} {}", artifact.tool.name, artifact.tool.version),
+        muscle: muscle.to_owned(),
+        command: provenance.command,
+        date: provenance.date,
+        inputs: artifact.inputs.iter().map(input).collect(),
+        options: vec![
+            ("most changes".to_owned(), artifact.config.max_changes.to_string()),
+            ("effects not considered".to_owned(), excluded),
+            ("seed".to_owned(), artifact.seed.to_string()),
+        ],
     }
 }

@@ -74,7 +74,7 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) unbounded: bool,
 
-    /// Fit a parameter on its own that is otherwise one share of a composite: c01 or strand_friction.
+    /// Fit a parameter on its own that otherwise only enters an identifiable combination: c01 or strand_friction.
     #[arg(long, value_name = "NAME", value_parser = freed)]
     pub(crate) free: Vec<Parameter>,
 

@@ -74,7 +74,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) starts: u32,
 
-    /// Most epochs of a start; by default 200, and 1000 for backpropagation.
+    /// Maximum epochs of a start; by default 200, and 1000 for backpropagation.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub(crate) epochs: Option<u32>,
 

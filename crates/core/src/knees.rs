@@ -18,7 +18,7 @@ const CLEARLY: f64 = 9.0;
 /// Steps of the search for the instant, per row.
 const STEPS_PER_ROW: usize = 10;
 
-/// The knees of a path and the bent line that they make: nothing before the first, its slope added behind each.
+/// The knees of a path and the bent line that they make: nothing before the first, its slope added after each.
 #[derive(Debug, Default)]
 pub(crate) struct Knees {
     bent: Vec<Bent>,
@@ -81,7 +81,7 @@ impl Knees {
         self.bent.get(first).is_some_and(|bent| bent.knee.at <= rows.end as f64)
     }
 
-    /// The rows that no knee parts from `row`: the first behind the last knee, and the last before the next.
+    /// The rows that no knee parts from `row`: the first after the last knee, and the last before the next.
     pub(crate) fn around(&self, row: usize) -> (usize, usize) {
         let next = self.bent.partition_point(|bent| bent.knee.at <= row as f64);
         let first = next.checked_sub(1).map_or(0, |last| self.bent[last].knee.at.ceil() as usize);

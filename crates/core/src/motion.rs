@@ -243,7 +243,7 @@ impl Path {
 const STILL_S: f64 = 0.1;
 
 /// Where the length stands still: it has no speed and moves by less than a threshold within the time around, but for what it
-/// did before it stopped or does behind its start at a knee.
+/// did before it stopped or does after its start at a knee.
 struct Still<'a> {
     path: &'a Path,
     /// Smooth lengths at every `every` rows.

@@ -148,7 +148,7 @@ pub fn acceleration_weights(period_s: f64) -> Vec<f64> {
     weights.iter().map(|weight| weight / sum).collect()
 }
 
-/// An average with positive weights, for what remembers its path: a parabola overshoots behind a step, which would be a
+/// An average with positive weights, for what remembers its path: a parabola overshoots after a step, which would be a
 /// reversal that never was.
 pub(crate) struct Average {
     weights: Vec<f64>,

@@ -329,7 +329,7 @@ impl Diagnosis {
         }
         for effect in self.effects.iter().filter(|effect| !effect.alternatives.is_empty()) {
             warnings.push(format!(
-                "what is named {} may be {} instead: these recordings cannot tell",
+                "these recordings cannot distinguish {} from {}",
                 effect.id,
                 effect.alternatives.join(" or ")
             ));
@@ -402,13 +402,20 @@ pub(crate) fn together(evaluation: &Evaluation) -> FitStatistics {
 
 /// A value with the prefix that base parameters are usually written with.
 fn plain(value: f64, unit: &str) -> String {
-    match unit {
-        "Pa" if value.abs() >= 1e8 => format!("{:.2} GPa", value * 1e-9),
-        "Pa" => format!("{:.1} kPa", value * 1e-3),
-        "1" if value.abs() < 0.1 => format!("{:.2}e-3", value * 1e3),
-        "1" => format!("{value:.3}"),
-        _ => format!("{value:.3} {unit}"),
-    }
+    let (value, unit) = match unit {
+        "Pa" if value.abs() >= 1e8 => (1e-9 * value, " GPa"),
+        "Pa" => (1e-3 * value, " kPa"),
+        "1" => (value, ""),
+        _ => return format!("{} {unit}", three_digits(value)),
+    };
+    format!("{}{unit}", three_digits(value))
+}
+
+/// Three significant digits, without zeros at the end of decimals.
+fn three_digits(value: f64) -> String {
+    let place = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    let text = format!("{value:.*}", (2 - place).clamp(0, 8) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// White noise of the force over all recordings.

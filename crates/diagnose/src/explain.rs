@@ -1,6 +1,7 @@
 //! What an effect looks like: a nominal muscle along a path that shows it, with the effect and without.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::{AugmentedModel, Effect, Moment, Seen, Term};
@@ -21,6 +22,8 @@ pub struct Signature {
     pub driven: Driven,
     /// Values of it, SI.
     pub driven_values: Vec<f64>,
+    /// Rows of a slow and of a fast cycle, where all cycles of the path would hide one another.
+    pub cycles: Option<[Range<usize>; 2]>,
     /// Coordinate that tells the effect.
     pub coordinate: Coordinate,
     /// Values of it, SI.
@@ -108,6 +111,7 @@ pub fn signature(effect: &'static dyn Effect) -> Signature {
         path: path.words,
         driven: path.driven,
         driven_values: instants.iter().map(|instant| driven_value(&instant.moment)).collect(),
+        cycles: path.is_chirp.then(|| chirp_cycles(&instants)),
         coordinate,
         coordinate_values,
         without_n,
@@ -152,6 +156,8 @@ struct Path {
     words: &'static str,
     driven: Driven,
     duration_s: f64,
+    /// Whether cycles grow faster along it.
+    is_chirp: bool,
     /// Gauge pressure in Pa and contraction ratio at a time in s.
     at: fn(f64) -> (f64, f64),
 }
@@ -159,12 +165,13 @@ struct Path {
 impl Path {
     /// A short form of the protocol of that name, which moves along the coordinate.
     fn of(protocol: &str, coordinate: Coordinate) -> Self {
-        let path = |words, driven, duration_s, at| Self { words, driven, duration_s, at };
+        let path = |words, driven, duration_s, at| Self { words, driven, duration_s, is_chirp: false, at };
         match protocol {
             _ if coordinate == Coordinate::Speed => {
-                path("length sines of rising frequency at 300 kPa", Driven::Contraction, 30.0, |t| {
-                    (300e3, 0.1 - 0.06 * sweep(t).cos())
-                })
+                let chirp = path("length chirp at 300 kPa", Driven::Contraction, 30.0, |t| {
+                    (300e3, 0.1 - 0.06 * chirp_phase(t).cos())
+                });
+                Self { is_chirp: true, ..chirp }
             }
             "pressure-chirp" => path("pressure steps at one length", Driven::Time, 6.0, |t| {
                 (100e3 + 250e3 * smooth_step((t - 1.0) / 0.1) - 250e3 * smooth_step((t - 3.5) / 0.1), 0.08)
@@ -273,10 +280,20 @@ fn smooth_step(share: f64) -> f64 {
     share * share * (3.0 - 2.0 * share)
 }
 
-/// Phase of a sweep from 0.05 to 3 Hz within 30 s.
-fn sweep(time_s: f64) -> f64 {
+/// Phase of a chirp from 0.05 to 3 Hz within 30 s.
+fn chirp_phase(time_s: f64) -> f64 {
     let growth_per_s = 60.0_f64.ln() / 30.0;
     TAU * 0.05 * (growth_per_s * time_s).exp_m1() / growth_per_s
+}
+
+/// Rows of the first and of the last whole cycle of the chirp.
+fn chirp_cycles(instants: &[Instant]) -> [Range<usize>; 2] {
+    let cycle = |instant: &Instant| (chirp_phase(instant.moment.time_s) / TAU).floor();
+    let last = instants.last().map_or(0.0, cycle) - 1.0;
+    [0.0, last].map(|wanted| {
+        let start = instants.partition_point(|instant| cycle(instant) < wanted);
+        start..instants.partition_point(|instant| cycle(instant) <= wanted)
+    })
 }
 
 #[cfg(test)]
@@ -309,11 +326,17 @@ mod tests {
             assert!(found.with_n.iter().chain(&found.coordinate_values).all(|value| value.is_finite()), "{id}");
             let size_n = rms(&found.with_n, &found.without_n);
             assert!(size_n > 0.3 && size_n < 200.0, "{id}: {size_n} N");
+            for cycle in found.cycles.into_iter().flatten() {
+                let ends = found.driven_values[cycle.clone()]
+                    .iter()
+                    .fold((1.0_f64, 0.0_f64), |(low, high), ratio| (low.min(*ratio), high.max(*ratio)));
+                assert!(ends.0 < 0.041 && ends.1 > 0.159, "{id}: {cycle:?} is no whole cycle: {ends:?}");
+            }
         }
     }
 
     #[test]
-    fn friction_that_builds_up_shows_behind_a_reversal_alone() {
+    fn friction_that_builds_up_shows_after_a_reversal_alone() {
         let effect = pam_core::effects::effect("presliding-hysteresis").expect("an id");
         let found = signature(effect);
         let residual_n = |at: usize| (found.with_n[at] - found.without_n[at]).abs();

@@ -172,7 +172,7 @@ fn finish(setting: &Setting<'_>, muscle: Muscle, x: &[f64], converged: bool) -> 
     Ok(FreedFit { muscle, columns, condensed, steps, x: polished.x, at_bound: polished.at_bound, converged })
 }
 
-/// `x` with the coordinates behind it that leave the dimensions where they are.
+/// `x` with the coordinates after it that leave the dimensions where they are.
 fn with_rest(x: &[f64], steps: &[(f64, f64)]) -> Vec<f64> {
     x.iter().copied().chain(steps.iter().map(|(low, high)| -low / (high - low))).collect()
 }

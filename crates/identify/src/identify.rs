@@ -64,7 +64,7 @@ pub struct Identified {
     pub model: ForceModel,
     /// What was moved.
     pub space: SearchSpace,
-    /// Dimensions that were moved, in the order of the coordinates behind those of `space`.
+    /// Dimensions that were moved, in the order of the coordinates after those of `space`.
     pub freed: Vec<Dimension>,
     /// The search.
     pub fit: Fit,

@@ -8,7 +8,7 @@ use pam_optim::swarm::Axes;
 
 use crate::search_space::SearchSpace;
 
-/// Least squares over a search space. The summary has the columns of eq. 11 and, behind them, one column
+/// Least squares over a search space. The summary has the columns of eq. 11 and, after them, one column
 /// for each dimension that is linearized around its present value (none in the usual fit).
 #[derive(Debug)]
 pub struct ForceProblem<'a> {

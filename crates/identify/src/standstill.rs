@@ -1,4 +1,4 @@
-//! Which law the friction of a muscle follows while its length stands still, and behind a reversal, judged by its recordings.
+//! Which law the friction of a muscle follows while its length stands still, and after a reversal, judged by its recordings.
 //!
 //! Every law gives the same columns of eq. 11 other signs of friction where the length rests and the pressure moves. The law
 //! that leaves least of the force, with weights free of bounds so that no start of a search matters, is taken; samples
@@ -20,7 +20,7 @@ use crate::prepare::Prepared;
 /// Pressures over which friction may turn over, in Pa; nothing for any change that is not noise.
 const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 
-/// Travels over which friction may keep its sign after a reversal, and in which it may turn over behind that, in m. What takes
+/// Travels over which friction may keep its sign after a reversal, and in which it may turn over after that, in m. What takes
 /// longer is pre-sliding, an effect with a name.
 const HELD_M: [f64; 6] = [0.0, 1e-5, 1.5e-5, 2e-5, 3e-5, 4.5e-5];
 /// See [`HELD_M`].

@@ -11,7 +11,7 @@
 //! ∂/∂w_jk = δ_j h_k,   ∂/∂b_j = δ_j,   δ_k = f'(h_k) Σ_j δ_j w_jk
 //! ```
 //!
-//! where the sum runs over the neurons `j` behind `k`, which eq. 19 misprints.
+//! where the sum runs over the neurons `j` after `k`, which eq. 19 misprints.
 //!
 //! Parameters are one vector: for every layer its weights row by row (`outputs × inputs`), then its biases.
 

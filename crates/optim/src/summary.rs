@@ -140,7 +140,7 @@ impl Summary {
 #[derive(Debug, Clone)]
 pub struct SquareSum {
     n_columns: usize,
-    /// For every band of so many rows: `z`, with `ρ` behind it, and then each column that is not zero there.
+    /// For every band of so many rows: `z`, with `ρ` after it, and then each column that is not zero there.
     bands: Vec<[f64; LANES]>,
 }
 

@@ -137,7 +137,7 @@ fn effect() -> PageEffect {
                   builds up over a distance of the order of a millimetre instead of jumping at once. Its full value \
                   grows with the pressure."
             .to_owned(),
-        signature: "The residual sits in the first millimetres behind every reversal and changes sign with the kind \
+        signature: "The residual sits in the first millimetres after every reversal and changes sign with the kind \
                     of reversal; it does not depend on speed, nor on how long the muscle rested."
             .to_owned(),
         equation: "F = F_static(p, L) - F_c(p, L) z,  z = Σ w_i z_i,  z_i ← clamp(z_i + Δx / r_i, -1, 1),  \
@@ -170,7 +170,7 @@ fn effect() -> PageEffect {
         alternatives: vec![PageAlternative {
             id: IDS[10].to_owned(),
             name: "compliance in series".to_owned(),
-            because: "a soft fixture also makes the slope behind a reversal finite".to_owned(),
+            because: "a soft fixture also makes the slope after a reversal finite".to_owned(),
             test: "minor loops at several pressures: the slope of a fixture is the same at all of them".to_owned(),
         }],
         look_alikes: Vec::new(),
@@ -306,7 +306,8 @@ fn signature() -> SignatureFigure {
     let recording = isobaric(300.0, true);
     let rows = 2667..5334;
     let take = |values: &[f64]| values[rows.clone()].to_vec();
-    let series = |name: &str, xs: Vec<f64>, ys: Vec<f64>| SignatureSeries { name: name.to_owned(), xs, ys };
+    let series =
+        |name: &str, xs: Vec<f64>, ys: Vec<f64>| SignatureSeries { name: name.to_owned(), xs, ys, dots: false };
     let model = recording.model_force_n.clone().unwrap_or_default();
     let x = take(&recording.contraction_percent);
     let residual = model.iter().zip(&recording.base_force_n).map(|(model, base)| model - base).collect::<Vec<_>>();
@@ -323,7 +324,7 @@ fn signature() -> SignatureFigure {
                 ],
             },
             SignaturePanel {
-                title: "Residual behind a reversal".to_owned(),
+                title: "Residual after a reversal".to_owned(),
                 x_label: "travel since reversal (mm)".to_owned(),
                 y_label: "residual (N)".to_owned(),
                 series: vec![series("residual", take(&recording.travel_mm), take(&residual))],

@@ -5,14 +5,18 @@
 //! | top        | the verdict, and what is left of the force                       |
 //! | changed    | each change with its size, in its unit and in standard errors    |
 //! | unchanged  | everything else that was compared, and how far it may differ     |
-//! | candidates | what was weighed                                                 |
-//! | inputs     | files and their digests                                          |
+//! | time       | force as measured, of the baseline and with the changes          |
+//! | candidates | everything that was weighed                                      |
+//! | appendix   | muscle, command, files and their digests                         |
 
-use crate::Table;
+use crate::diagnosis_page::ending::appendix;
+use crate::diagnosis_page::over_time::{SCRIPT, over_time};
+use crate::diagnosis_page::samples::Samples;
 use crate::escape::escaped;
 use crate::number::significant;
 use crate::page::document;
-use crate::page::html::{card, heading, list, newtons, paragraph, remark, table};
+use crate::page::html::{card, heading, list, newtons, paragraph, percent, remark, table};
+use crate::{FigureError, PageAppendix, PageRecording, Table};
 
 /// Content of the page; numbers with units come as they are written.
 #[derive(Debug, Clone)]
@@ -29,12 +33,20 @@ pub struct ChangePage {
     pub changes: Vec<PageChange>,
     /// Everything else.
     pub unchanged: Vec<PageCompared>,
-    /// Root mean squares of residuals, each with its name, in N.
-    pub residuals_n: Vec<(String, f64)>,
+    /// RMSE of the baseline on its own recordings, on the later ones, and with what has changed, in N.
+    pub rmse_n: [f64; 3],
+    /// RMSE that the sensors leave of a perfect model, in N.
+    pub noise_floor_n: f64,
+    /// Share of the samples that were compared.
+    pub share_compared: f64,
+    /// What the baseline is called beside the measured force, and what it is called with the changes.
+    pub names: [&'static str; 2],
+    /// The later recordings.
+    pub recordings: Vec<PageRecording>,
     /// What was weighed: id, log predictive ratio, RMSE in N.
     pub candidates: Vec<(String, f64, f64)>,
-    /// Files with their SHA-256.
-    pub inputs: Vec<(String, String)>,
+    /// How the comparison came about.
+    pub appendix: PageAppendix,
     /// What to know before use.
     pub warnings: Vec<String>,
 }
@@ -48,7 +60,7 @@ pub struct PageChange {
     pub numbers: Vec<PageCompared>,
     /// Cross-validated RMSE without and with it, in N.
     pub rmse_n: [f64; 2],
-    /// Ids of what it cannot be distinguished from.
+    /// What it cannot be distinguished from.
     pub alternatives: Vec<String>,
 }
 
@@ -66,8 +78,21 @@ pub struct PageCompared {
 }
 
 /// Writes the page, as an HTML document.
-pub fn change_page(page: &ChangePage) -> String {
-    let cards: String = page.residuals_n.iter().map(|(name, value)| card(name, &newtons(*value), "RMSE")).collect();
+///
+/// # Errors
+/// [`FigureError`] if columns of a recording differ in length.
+pub fn change_page(page: &ChangePage) -> Result<String, FigureError> {
+    let [own, before, after] = &page.rmse_n;
+    let floor = page.noise_floor_n;
+    let note = format!("RMSE; {} on its own recordings", newtons(*own));
+    let within = format!("RMSE; noise floor {}", newtons(floor));
+    let cards = card("Baseline on the later recordings", &newtons(*before), &note)
+        + &card(&capitalized(page.names[1]), &newtons(*after), &within)
+        + &card(
+            "Compared",
+            &percent(page.share_compared),
+            "of the samples: within the pressures and lengths of the baseline",
+        );
     let warnings = if page.warnings.is_empty() {
         String::new()
     } else {
@@ -75,19 +100,21 @@ pub fn change_page(page: &ChangePage) -> String {
     };
     let header = format!(
         "<header class=\"{}\">\n<h1>{}</h1>\n<p class=\"verdict\">{}</p>\n<p class=\"statement\">{}</p>\n\
-         <div class=\"cards four\">\n{cards}</div>\n{warnings}</header>\n",
+         <div class=\"cards\">\n{cards}</div>\n{warnings}</header>\n",
         page.class,
         escaped(&page.title),
         escaped(&page.verdict),
-        escaped(&page.statement)
+        escaped(&capitalized(&page.statement))
     );
+    let recordings = page.recordings.iter().map(Samples::new).collect::<Result<Vec<_>, _>>()?;
     let sections = [
         ("changed", "What has changed?", changed(page)),
-        ("unchanged", "What has not?", unchanged(page)),
-        ("candidates", "What was weighed?", candidates(page)),
-        ("inputs", "Files", inputs(page)),
+        ("time", "Measured and modelled force over time", over_time(&recordings, |_| floor, page.names)?),
+        ("unchanged", "Not named as changed", unchanged(page)),
+        ("candidates", "Candidates", candidates(page)),
+        ("appendix", "Appendix: provenance", appendix(&page.appendix)),
     ];
-    document(&page.title, &header, &sections, "", "")
+    Ok(document(&page.title, &header, &sections, "", SCRIPT))
 }
 
 fn compared(rows: &[PageCompared]) -> String {
@@ -102,9 +129,10 @@ fn changed(page: &ChangePage) -> String {
     if page.changes.is_empty() {
         return paragraph("Nothing that these recordings show.");
     }
+    let remark_of_errors = remark("Each standard error is of the difference, of then and now together.");
     let one = |change: &PageChange| {
         let [without_n, with_n] = change.rmse_n;
-        let mut html = heading(&change.said);
+        let mut html = heading(&capitalized(&change.said));
         html.push_str(&compared(&change.numbers));
         html.push_str(&remark(&format!(
             "Cross-validated RMSE {} without it, {} with it.",
@@ -119,26 +147,25 @@ fn changed(page: &ChangePage) -> String {
         }
         html
     };
-    page.changes.iter().map(one).collect()
+    page.changes.iter().map(one).collect::<String>() + &remark_of_errors
+}
+
+fn capitalized(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
 
 fn unchanged(page: &ChangePage) -> String {
-    remark("Each alone beside what has changed; standard errors are of the difference, of then and now together.")
-        + &compared(&page.unchanged)
+    remark(
+        "Each alone, fitted beside the changes. A number is named as changed where it lowers the error on blocks left out of the \
+         fit; one that does not is listed here, however many standard errors it moves.",
+    ) + &compared(&page.unchanged)
 }
 
 fn candidates(page: &ChangePage) -> String {
-    let mut cells = Table::new(["candidate, alone", "log predictive ratio", "cross-validated RMSE N"]);
+    let mut cells = Table::new(["candidate, alone", "log predictive ratio", "cross-validated RMSE"]);
     for (id, log_ratio, rmse_n) in &page.candidates {
-        cells.row([id.clone(), significant(*log_ratio, 3), significant(*rmse_n, 3)]);
-    }
-    table(&cells)
-}
-
-fn inputs(page: &ChangePage) -> String {
-    let mut cells = Table::new(["file", "SHA-256"]);
-    for (path, sha256) in &page.inputs {
-        cells.row([path.clone(), sha256.clone()]);
+        cells.row([id.clone(), significant(*log_ratio, 3), newtons(*rmse_n)]);
     }
     table(&cells)
 }
@@ -155,11 +182,12 @@ mod tests {
             now: "180 ± 3 kPa".to_owned(),
             standard_errors: "-13.3".to_owned(),
         };
+        let columns = [[0.0, 1.0, 2.0].to_vec(), vec![5.0; 3], vec![8.0; 3], vec![5.5; 3]];
         let page = ChangePage {
             title: "What has changed since <a>.json".to_owned(),
             class: "explained",
             verdict: "Changed".to_owned(),
-            statement: "c10 + c01 & nothing else".to_owned(),
+            statement: "bladder & nothing else".to_owned(),
             changes: vec![PageChange {
                 said: "the bladder is softer".to_owned(),
                 numbers: vec![number],
@@ -167,13 +195,19 @@ mod tests {
                 alternatives: vec!["k1".to_owned()],
             }],
             unchanged: Vec::new(),
-            residuals_n: vec![("Noise floor".to_owned(), 0.4)],
+            rmse_n: [0.5, 3.0, 0.5],
+            noise_floor_n: 0.4,
+            share_compared: 0.97,
+            names: ["baseline", "with the changes"],
+            recordings: vec![PageRecording::over_time("later <1>".to_owned(), columns, vec![true; 3])],
             candidates: vec![("k1".to_owned(), 12.0, 1.0)],
-            inputs: vec![("<a>.json".to_owned(), "0".repeat(64))],
+            appendix: PageAppendix::default(),
             warnings: vec!["mind <this>".to_owned()],
         };
-        let html = change_page(&page);
+        let html = change_page(&page).expect("columns of one length");
         assert!(html.contains("What has changed since &lt;a&gt;.json") && html.contains("mind &lt;this&gt;"));
         assert!(html.contains("180 ± 3 kPa") && html.contains("−13.3") && html.contains("cannot distinguish it"));
+        assert!(html.contains("The bladder is softer") && html.contains("Bladder &amp; nothing else"));
+        assert!(html.contains("later &lt;1&gt;") && html.contains("RMSE 3.00 N → 0.50 N counted"), "{html}");
     }
 }

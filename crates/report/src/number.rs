@@ -53,6 +53,9 @@ pub fn with_stderr(value: f64, stderr: f64) -> String {
 /// that is empty, `1`, a reciprocal (`1/s`), or a power (`m^2`, `m²`) takes no prefix.
 pub fn engineering(value: f64, unit: &str, digits: usize) -> String {
     const PREFIXES: [&str; 9] = ["p", "n", "µ", "m", "", "k", "M", "G", "T"];
+    if let Some(value_mm2) = square_millimeters(value, unit) {
+        return engineering(value_mm2, "mm²", digits);
+    }
     let plain = unit.is_empty() || unit.starts_with('1') || unit.contains(['^', '²', '³', '%', '°']) || unit == "rad";
     if plain || !value.is_finite() || value == 0.0 {
         let unit = if unit == "1" { "" } else { unit };
@@ -64,10 +67,18 @@ pub fn engineering(value: f64, unit: &str, digits: usize) -> String {
     format!("{} {prefix}{unit}", significant(value / 1000f64.powi(step), digits))
 }
 
+/// Areas of muscles are some ten square millimeters; none where `unit` is another or the area large.
+fn square_millimeters(value: f64, unit: &str) -> Option<f64> {
+    (matches!(unit, "m^2" | "m²") && value.is_finite() && value.abs() < 1e-2).then_some(1e6 * value)
+}
+
 /// `value ± stderr` in `unit` with the prefix of [`engineering`]: `1.21 ± 0.03 mm`.
 pub fn engineering_with_stderr(value: f64, stderr: f64, unit: &str) -> String {
     if !(stderr.is_finite() && stderr > 0.0 && value.is_finite()) {
         return engineering(value, unit, 3);
+    }
+    if let Some(stderr_mm2) = square_millimeters(value.abs().max(stderr), unit).map(|_| 1e6 * stderr) {
+        return engineering_with_stderr(1e6 * value, stderr_mm2, "mm²");
     }
     let size = engineering(value.abs().max(stderr), unit, 3);
     let Some((number, prefixed)) = size.split_once(' ') else { return with_stderr(value, stderr) };
@@ -112,6 +123,13 @@ pub(crate) fn with_minus(text: String) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn areas_of_muscles_are_square_millimeters() {
+        assert_eq!(engineering(8.9991e-5, "m^2", 3), "90.0 mm²");
+        assert_eq!(engineering_with_stderr(8.9991e-5, 8e-9, "m²"), "(89.991 ± 0.008) mm²");
+        assert_eq!(engineering(2.0, "m^2", 3), "2.00 m^2");
+    }
 
     #[test]
     fn significant_digits_survive_rounding_and_size() {

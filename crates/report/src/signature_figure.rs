@@ -35,12 +35,16 @@ pub struct SignatureSeries {
     pub xs: Vec<f64>,
     /// Vertical values, as many.
     pub ys: Vec<f64>,
+    /// Whether they are dots: a path that returns often would be a tangle of lines.
+    pub dots: bool,
 }
 
 /// Colors of the lines, in turn: what is expected in ink, what the effect does in color.
 const COLORS: [Color; 5] = [palette::INK, palette::VERMILION, palette::BLUE, palette::GREEN, palette::PURPLE];
 /// Points of a line.
 const POINTS: usize = 1500;
+/// Dots in place of a line.
+const DOTS: usize = 1000;
 
 /// Draws the figure, as an SVG document 380 pixels high and 450 wide per panel.
 ///
@@ -100,6 +104,15 @@ fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
         // From reversal to reversal a coordinate may start anew: no line leads back.
         let far = 0.2 * (axes.x.to - axes.x.from);
         let values: Vec<(f64, f64)> = points(line).collect();
+        if line.dots {
+            // Values below a logarithmic axis have no place on it.
+            let shown = || values.iter().filter(|(x, _)| *x >= axes.x.from);
+            for (x, y) in shown().step_by(shown().count().div_ceil(DOTS).max(1)) {
+                canvas.dot(axes.at(*x, *y), 1.4, color);
+            }
+            keys.push(Key::new(line.name.clone(), Mark::Dot, color));
+            continue;
+        }
         for run in values.chunk_by(|a, b| (a.0 - b.0).abs() < far) {
             let ys: Vec<f64> = run.iter().map(|(_, y)| *y).collect();
             let within = |row: usize| (run[row].0.max(axes.x.from), run[row].1);

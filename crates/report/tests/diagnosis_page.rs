@@ -355,7 +355,8 @@ fn unequal_columns_are_refused() {
 
 #[test]
 fn a_signature_is_drawn_and_an_empty_one_refused() {
-    let series = |name: &str, xs: Vec<f64>, ys: Vec<f64>| SignatureSeries { name: name.to_owned(), xs, ys };
+    let series =
+        |name: &str, xs: Vec<f64>, ys: Vec<f64>| SignatureSeries { name: name.to_owned(), xs, ys, dots: false };
     let panel = |series| SignaturePanel {
         title: SHARP.to_owned(),
         x_label: "x (m)".to_owned(),

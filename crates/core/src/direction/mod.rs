@@ -83,7 +83,7 @@ pub struct Thresholds {
     /// Travel back from a reversal over which friction keeps its sign, in m; models that do not say keep it over none.
     #[serde(default)]
     pub held_m: f64,
-    /// Travel behind that in which friction turns over, in m; models that do not say turn over at once.
+    /// Travel after that in which friction turns over, in m; models that do not say turn over at once.
     #[serde(default)]
     pub turn_m: f64,
     /// What friction does while the length stands still; models that do not say follow the pressure at once.

@@ -141,7 +141,7 @@ fn path(time_s: &[f64], period_s: f64, shortening: &[f64], thresholds: Threshold
     (0..shortening.len()).map(|row| window.parabola(shortening, row).value).collect()
 }
 
-/// Lets the states follow the travel along `path` behind every turn, as `thresholds` say; over the stretches `pushed` the
+/// Lets the states follow the travel along `path` after every turn, as `thresholds` say; over the stretches `pushed` the
 /// pressure moves them. A turn is where the path is farthest, within `reach` rows of where the sign changes.
 fn turn_over(
     path: &[f64],
@@ -602,7 +602,7 @@ mod tests {
         let states = states_of(&times(n), &vec![3e5; n], &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
         for turn in 1..4 {
             let turn_row = (std::f64::consts::PI * f64::from(turn) * 300.0) as usize;
-            // 30 µm from the turn are 33 rows behind it.
+            // 30 µm from the turn are 33 rows after it.
             let flip = (turn_row - 60..turn_row + 120)
                 .find(|&row| states[row].bounds.middle() * states[turn_row - 100].bounds.middle() < 0.0);
             assert!(flip.is_some_and(|row| row.abs_diff(turn_row + 33) < 15), "{turn_row} {flip:?}");

@@ -19,7 +19,7 @@ impl Turn {
     /// Times that the window is centered on the turn that was found.
     const ROUNDS: usize = 3;
 
-    /// The turn around `row` of `raw`, behind which it goes the way of `sign`, from as many rows on either side.
+    /// The turn around `row` of `raw`, after which it goes the way of `sign`, from as many rows on either side.
     /// `threshold` is five deviations of the noise. None where there is none.
     pub(super) fn of(raw: &[f64], row: usize, reach: usize, sign: i8, threshold: f64) -> Option<Self> {
         let noise = NOISE * threshold;

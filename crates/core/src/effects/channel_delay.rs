@@ -69,11 +69,11 @@ static PAGE: Page = Page {
               the model then computes the force of another instant.",
     equation: "F(t) = F_base(p(t + d_p), L(t + d_L))",
     symbols: &[
-        Symbol { symbol: "d_p", unit: "s", meaning: "by how much the pressure is late behind the force; -50 to 50 ms" },
+        Symbol { symbol: "d_p", unit: "s", meaning: "by how much the pressure lags the force; -50 to 50 ms" },
         Symbol {
             symbol: "d_L",
             unit: "s",
-            meaning: "by how much the length is late behind the force; -50 to 50 ms. Both alike: the force is early",
+            meaning: "by how much the length lags the force; -50 to 50 ms. Both alike: the force is early",
         },
     ],
     validity: "Delays that do not change; interpolation between samples, so no faster motion than a tenth of the \

@@ -66,7 +66,7 @@ static PAGE: Page = Page {
     id: "force-drift",
     name: "drift of the load cell",
     summary: "The zero of the load cell wanders with its temperature: evenly over hours, and faster in the first minutes \
-              behind switching on. Whatever the muscle does, the drift goes on.",
+              after switching on. Whatever the muscle does, the drift goes on.",
     equation: "F = F_base + d t + w (1 - exp(-t / τ))",
     symbols: &[
         Symbol { symbol: "d", unit: "N/s", meaning: "even drift, either sign; 0.1 to 1 N per hour for a good cell" },
@@ -77,7 +77,7 @@ static PAGE: Page = Page {
     validity: "Each recording starts with the zero of eq. 11; the same drift in all of them.",
     source: "OIML R 60 for creep and zero return of load cells",
     signature: "The residual is a slow slope over time, the same at every pressure, length and direction, and it does not \
-                start anew behind a step.",
+                start anew after a step.",
     confused_with: &[
         Confusion {
             id: "fatigue-wear",

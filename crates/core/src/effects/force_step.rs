@@ -63,7 +63,7 @@ static PAGE: Page = Page {
     id: "force-step",
     name: "step of the force",
     summary: "At one instant the force jumps and stays: a clamp slipped, the cell was knocked or re-zeroed, a strand \
-              broke. Everything behind that instant is shifted, in that recording alone.",
+              broke. Everything after that instant is shifted, in that recording alone.",
     equation: "F = F_base + A [t ≥ t₀], in one recording",
     symbols: &[
         Symbol { symbol: "A", unit: "N", meaning: "height of the step, either sign; 0.5 to 50 N" },
@@ -73,7 +73,7 @@ static PAGE: Page = Page {
     validity: "A jump within a few samples; a slip that changes the length by more than a fraction of a millimetre acts \
                like another rest length instead.",
     source: "Page (1954), Biometrika 41, for the detection of a change of the mean",
-    signature: "The residual has one level before an instant and another one behind it, with nothing in pressure or \
+    signature: "The residual has one level before an instant and another one after it, with nothing in pressure or \
                 length to go with it.",
     confused_with: &[
         Confusion {

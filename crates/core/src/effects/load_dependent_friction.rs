@@ -66,7 +66,7 @@ static PAGE: Page = Page {
         Symbol { symbol: "s", unit: "1", meaning: "direction of motion, kept at standstill" },
         Symbol { symbol: "F_static", unit: "N", meaning: "force without friction" },
     ],
-    validity: "μΘ small against 1, where exp(-s μΘ) is 1 - s μΘ; sliding, not the millimetre behind a reversal.",
+    validity: "μΘ small against 1, where exp(-s μΘ) is 1 - s μΘ; sliding, not the millimetre after a reversal.",
     source: "Euler (1762) and Eytelwein (1808) for the capstan; Al Saaideh and Al Janaideh (2022) for hysteresis of \
              pneumatic muscles that depends on the load",
     signature: "The residual is odd in the direction and proportional to the force: largest at small contraction, gone \

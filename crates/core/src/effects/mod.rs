@@ -204,7 +204,7 @@ pub trait Effect: Sync {
         false
     }
 
-    /// Whether what it has changed stays: it comes to its end, and recordings behind that show nothing of it.
+    /// Whether what it has changed stays: it comes to its end, and recordings after that show nothing of it.
     fn is_permanent(&self) -> bool {
         false
     }

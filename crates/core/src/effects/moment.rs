@@ -11,7 +11,7 @@ pub struct Moment {
     pub recording: usize,
     /// Time since the recording began.
     pub time_s: f64,
-    /// Time since the moment before; zero at the first and behind a gap.
+    /// Time since the moment before; zero at the first and after a gap.
     pub step_s: f64,
     /// Gauge pressure.
     pub pressure_pa: f64,

@@ -86,7 +86,7 @@ static PAGE: Page = Page {
                stretch under pressure.",
     source: "Vo-Minh, Tjahjowidodo, Ramon and Van Brussel (2011), IEEE/ASME Trans. Mechatronics 16(1); Al-Bender, \
              Lampaert and Swevers (2005), IEEE Trans. Automatic Control 50(11)",
-    signature: "The residual sits in the first millimetres behind every reversal and changes sign with the kind of \
+    signature: "The residual sits in the first millimetres after every reversal and changes sign with the kind of \
                 reversal; it does not depend on speed, nor on how long the muscle rested; minor loops are lenses that \
                 return to where they turned.",
     confused_with: &[
@@ -97,7 +97,7 @@ static PAGE: Page = Page {
         },
         Confusion {
             id: "series-compliance",
-            because: "a soft fixture also makes the slope behind a reversal finite",
+            because: "a soft fixture also makes the slope after a reversal finite",
             test: "minor loops at several pressures: the slope of a fixture is the same at all of them; or a rod in the \
                    place of the muscle",
         },

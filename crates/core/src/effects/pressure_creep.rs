@@ -82,7 +82,7 @@ impl Memory for State {
 static PAGE: Page = Page {
     id: "pressure-creep",
     name: "creep under pressure",
-    summary: "Strands under tension stretch on, and the weave settles, for seconds to minutes behind each change of \
+    summary: "Strands under tension stretch on, and the weave settles, for seconds to minutes after each change of \
               what the gas pulls. The force overshoots and comes down at constant pressure and length.",
     equation: "F = F_base + Σ g_i [(1 - s) A (p - r_i) + s (f - q_i)],  τ_i dr_i/dt = p - r_i,  τ_i dq_i/dt = f - q_i,  \
                τ_i = τ, 10 τ, 100 τ",
@@ -100,16 +100,16 @@ static PAGE: Page = Page {
         Symbol { symbol: "g₃", unit: "1", meaning: "overstress that decays with 100 τ; likewise" },
         Symbol { symbol: "r_i, q_i", unit: "Pa, N", meaning: "what braid and bladder have got used to" },
     ],
-    validity: "Pressure measured in the muscle and temperature of the gas settled, that is some seconds behind a fast \
+    validity: "Pressure measured in the muscle and temperature of the gas settled, that is some seconds after a fast \
                filling; linear viscoelasticity over three decades of time from τ on.",
     source: "Minh, Tjahjowidodo, Ramon and Van Brussel (2010) for creep of pneumatic muscles; Prony series of a \
              generalized Maxwell body (Wiechert 1893)",
-    signature: "In holds behind a step of the pressure the residual decays, in proportion to what the step changed the force \
-                of the gas by; behind steps of the length as well where s is 1.",
+    signature: "In holds after a step of the pressure the residual decays, in proportion to what the step changed the force \
+                of the gas by; after steps of the length as well where s is 1.",
     confused_with: &[
         Confusion {
             id: "viscoelastic-relaxation",
-            because: "both decay in the holds behind a step of the length",
+            because: "both decay in the holds after a step of the length",
             test: "steps of the pressure at fixed length: relaxation of the bladder does not show there",
         },
         Confusion {

@@ -1,4 +1,4 @@
-//! Prony series: overstress that decays exponentially behind a change of what drives it.
+//! Prony series: overstress that decays exponentially after a change of what drives it.
 //!
 //! ```text
 //! τ dq/dt = f - q,   u = f - q,   so   u ← u e^{-h} + Δf (1 - e^{-h}) / h,   h = Δt / τ
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn a_ramp_is_exact_at_any_step() {
-        // u = r τ (1 - e^{-t/τ}) behind the start of a ramp with rate r.
+        // u = r τ (1 - e^{-t/τ}) after the start of a ramp with rate r.
         for n in [1, 7, 100] {
             let mut overstress = Overstress::new(3.0);
             overstress.follow(&at(0.0), 0.0);

@@ -80,7 +80,7 @@ static PAGE: Page = Page {
         Confusion {
             id: "viscoelastic-relaxation",
             because: "a broad spectrum of relaxation times widens loops by equal steps per decade as well",
-            test: "hold behind a step of the length: relaxation decays in the hold, friction does not; and the height of \
+            test: "hold after a step of the length: relaxation decays in the hold, friction does not; and the height of \
                    relaxation does not follow the pressure",
         },
         Confusion {

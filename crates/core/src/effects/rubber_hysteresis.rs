@@ -74,7 +74,7 @@ static PAGE: Page = Page {
     source: "Al-Bender, Lampaert and Swevers (2005), IEEE Trans. Automatic Control 50(11), for the operator; Vo-Minh, \
              Tjahjowidodo, Ramon and Van Brussel (2011), IEEE/ASME Trans. Mechatronics 16(1), for its use in muscles",
     signature: "The residual is odd in the direction of motion, as high at low pressure as at high, and builds up over \
-                some millimetres behind each reversal; neither speed nor rest changes it.",
+                some millimetres after each reversal; neither speed nor rest changes it.",
     confused_with: &[
         Confusion {
             id: "presliding-hysteresis",
@@ -90,7 +90,7 @@ static PAGE: Page = Page {
         Confusion {
             id: "viscoelastic-relaxation",
             because: "a broad spectrum of relaxation times also makes loops that hardly depend on the rate",
-            test: "hold for a minute behind a step of the length: relaxation decays in the hold, hysteresis does not",
+            test: "hold for a minute after a step of the length: relaxation decays in the hold, hysteresis does not",
         },
     ],
     test: "minor loops of 10, 5, 2 and 1 mm at low and at high pressure, with holds of ten seconds at the reversals",

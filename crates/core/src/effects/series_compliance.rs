@@ -139,7 +139,7 @@ static PAGE: Page = Page {
         },
         Confusion {
             id: "presliding-hysteresis",
-            because: "a soft fixture also makes the slope behind a reversal finite",
+            because: "a soft fixture also makes the slope after a reversal finite",
             test: "minor loops at several pressures: the slope of a fixture is the same at all of them; or a rod in the \
                    place of the muscle",
         },

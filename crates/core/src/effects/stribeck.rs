@@ -95,7 +95,7 @@ static PAGE: Page = Page {
     id: "stribeck",
     name: "Stribeck effect",
     summary: "Friction of the braid is larger at a crawl than in motion. It falls with the speed over some millimetres \
-              per second and breaks away behind a rest, which makes slow motion under a soft load jerky.",
+              per second and breaks away after a rest, which makes slow motion under a soft load jerky.",
     equation: "F = F_base - s f_s p π D L h,  dh/|dx| = (exp(-(|v| / v_s)ⁿ) - h) / δ,  δ = 0.1 mm",
     symbols: &[
         Symbol {
@@ -122,8 +122,8 @@ static PAGE: Page = Page {
         },
         Confusion {
             id: "viscoelastic-relaxation",
-            because: "a start behind a rest overshoots with both",
-            test: "start again behind rests of 0.1 to 100 s, once onwards and once backwards: relaxation is there during \
+            because: "a start after a rest overshoots with both",
+            test: "start again after rests of 0.1 to 100 s, once onwards and once backwards: relaxation is there during \
                    the rest already",
         },
         Confusion {

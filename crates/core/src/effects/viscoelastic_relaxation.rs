@@ -73,12 +73,12 @@ static PAGE: Page = Page {
     validity: "Linear viscoelasticity over three decades of time from τ on; a muscle that has rested before it starts.",
     source: "Prony series of a generalized Maxwell body (Wiechert 1893); Bennington and others (2023), arXiv \
              2301.04684, for muscles as standard linear solids",
-    signature: "In holds behind a step of the length the residual decays, against the step and in proportion to it, and \
-                starts anew with each step; in holds behind a step of the pressure there is nothing.",
+    signature: "In holds after a step of the length the residual decays, against the step and in proportion to it, and \
+                starts anew with each step; in holds after a step of the pressure there is nothing.",
     confused_with: &[
         Confusion {
             id: "pressure-creep",
-            because: "both decay in the holds behind a step of the length",
+            because: "both decay in the holds after a step of the length",
             test: "steps of the pressure at fixed length: only creep that inflation drives shows there",
         },
         Confusion {

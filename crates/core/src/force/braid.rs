@@ -123,7 +123,7 @@ impl ComplianceNodes {
     /// Weights of the columns at a compliance.
     pub fn weights(&self, compliance_per_pa: f64) -> [f64; NODES] {
         // Lagrange polynomials as products, so that nothing is divided by a small distance: of the distances in front of
-        // a node, then of those behind it.
+        // a node, then of those after it.
         let mut weights = self.scales;
         let mut product = compliance_per_pa;
         for (weight, node) in weights.iter_mut().zip(&self.nodes_per_pa) {

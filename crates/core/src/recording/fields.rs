@@ -35,14 +35,14 @@ pub(crate) fn is_comment(line: &[u8]) -> bool {
 ///
 /// # Design
 /// `csv-core` knows where a field ends and what its quotes mean. Two habits of loggers are outside its grammar, so
-/// a line with quotes is handed to it field by field: blanks before a quote are passed over, and text behind a
+/// a line with quotes is handed to it field by field: blanks before a quote are passed over, and text after a
 /// closing quote leaves the field as it was written. A line is all it sees, so that a quote left open cannot take
 /// the lines below along.
 #[derive(Debug)]
 pub(crate) struct Splitter {
     reader: csv_core::Reader,
     separator: u8,
-    /// Fields without their quotes, one behind the other.
+    /// Fields without their quotes, one after the other.
     text: Vec<u8>,
     /// Where in `text` each field ends.
     ends: Vec<usize>,

@@ -20,7 +20,7 @@ pub(super) struct LvmHeader {
     pub(super) n_bytes: usize,
     pub(super) n_lines: u64,
     pub(super) separator: u8,
-    /// Units of the channels, where the file tells them, behind that of time.
+    /// Units of the channels, where the file tells them, after that of time.
     pub(super) units: Vec<String>,
 }
 

@@ -228,7 +228,7 @@ impl Name {
     }
 }
 
-/// A word and what stands in brackets behind it.
+/// A word and what stands in brackets after it.
 fn bracketed(name: &str) -> Option<(&str, &str)> {
     [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
         let (word, symbol) = name.strip_suffix(close)?.split_once(open)?;

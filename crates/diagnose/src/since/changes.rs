@@ -14,6 +14,7 @@ use super::nuisances::nuisances;
 use super::point::Point;
 use super::rows::Rows;
 use super::search::Bounds;
+use super::traces::LaterTrace;
 use super::written;
 use crate::check;
 use crate::error::DiagnoseError;
@@ -47,6 +48,8 @@ pub struct Changes {
     pub candidates: Vec<ChangeCandidate>,
     /// What a person should know.
     pub warnings: Vec<String>,
+    /// The recordings over time.
+    pub traces: Vec<LaterTrace>,
 }
 
 /// Share of the variance of the force below which the model of then is that of another muscle, unless what has changed brings it

@@ -16,7 +16,7 @@
 //! In reading order: [`point`] is the model and the channels as numbers that move, [`quantity`] those numbers, [`rows`] the
 //! regression that every hypothesis is judged by, [`hypothesis`] what is said to have changed and its fit, [`candidate`] what may have,
 //! [`search`] the search, [`mod@changes`] all
-//! of it in order.
+//! of it in order, [`traces`] forces over time for a page.
 
 mod baseline;
 mod candidate;
@@ -28,7 +28,9 @@ mod point;
 mod quantity;
 mod rows;
 mod search;
+mod traces;
 pub mod words;
 mod written;
 
 pub use changes::{Changes, Request, changes, check};
+pub use traces::LaterTrace;

@@ -73,6 +73,7 @@ pub(super) fn written(later: &Later<'_>, then: &Point, known: &Baseline, found: 
         changes,
         fit,
         warnings,
+        traces: super::traces::traces(later, then, found),
     }
 }
 

@@ -231,7 +231,7 @@ fn moved(recording: &Recording, run: Range<usize>, largest_n: Option<f64>) -> io
     let stride = (run.len() / LOOKED_AT).max(1);
     let Some(map) = Map::of(recording, &run, stride)? else { return Ok(false) };
     let rows = recording.samples.n_rows();
-    // Before and behind the run, windows as long as it is, or as long as there are.
+    // Before and after the run, windows as long as it is, or as long as there are.
     let most_elsewhere = run.start.max(rows - run.end);
     let window = run.len().min(most_elsewhere);
     let (mut along_n, mut windowed_n, mut elsewhere_n) = (Vec::new(), Vec::new(), 0.0_f64);

@@ -50,11 +50,12 @@ pub struct PageTerm {
 pub(super) fn empirical(page: Option<&PageEmpirical>) -> Result<String, FigureError> {
     let Some(page) = page else { return Ok(String::new()) };
     let [without_n, with_n] = page.left_n.map(newtons);
-    let on = if page.of_holdout { "held-out recordings" } else { "blocks left out of the fit" };
+    let on = if page.of_holdout { "over all samples of held-out recordings" } else { "of blocks left out of the fit" };
     let mut html = heading("Unmodelled structure, as empirical terms");
     html.push_str(&paragraph(&format!(
-        "No effect of the catalogue explains the rest. An empirical equation, found in these recordings, lowers the error on \
-         {on} from {without_n} to {with_n}. It describes and does not explain; outside the range that was seen it fades to zero."
+        "No effect of the catalogue explains the rest. An empirical equation, found in these recordings, lowers the RMSE \
+         {on} from {without_n} to {with_n}, everything else fitted beside it. It describes and does not explain; outside the \
+         range of the recordings it fades to zero."
     )));
     for term in &page.terms {
         html.push_str("<article class=\"effect\">\n");
@@ -103,7 +104,7 @@ fn stability(term: &PageTerm) -> String {
 }
 
 fn nearest(nearest: &[(String, String)]) -> Table {
-    let mut table = Table::new(["effect", "what speaks against it"]);
+    let mut table = Table::new(["effect", "evidence against it"]);
     for (id, against) in nearest {
         table.row([id.clone(), against.clone()]);
     }
@@ -178,7 +179,7 @@ mod tests {
             "the pressure (25 %)",
             "stribeck",
             "<svg",
-            "on held-out recordings",
+            "over all samples of held-out recordings",
         ] {
             assert!(html.contains(text), "{text}");
         }

@@ -1,4 +1,4 @@
-//! Sections at the end: what it buys, what is unknown, what to record next, how it came about.
+//! Sections at the end: improvement, what is unknown, the next recording, provenance.
 
 use super::fit_bars::fit_bars;
 use super::headline::share_explained;
@@ -13,10 +13,14 @@ use crate::{FigureError, Table};
 
 /// Section: what the effects buy.
 pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<String, FigureError> {
-    if page.effects.is_empty() {
+    if page.effects.is_empty() && page.empirical.is_none() {
         return Ok(paragraph("Nothing was added to the model, so nothing changes."));
     }
     let mut html = match page.holdout {
+        // What an empirical term gains is said beside its equation.
+        _ if page.effects.is_empty() => {
+            paragraph("No effect was named. The augmented model has the empirical terms above and no other addition.")
+        }
         Some(fit) => {
             let gone = share_explained(fit).map_or(String::new(), |share| {
                 format!(", {} of what the base model leaves above the noise", percent(share))
@@ -33,7 +37,7 @@ pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Strin
              see what the effects are worth on data that they have not seen.",
         ),
     };
-    if let Some(fit) = page.holdout {
+    if let Some(fit) = page.holdout.filter(|_| !page.effects.is_empty()) {
         let svg = fit_bars("Residual on held-out recordings", &[("held-out recordings", fit)], true)?;
         html.push_str(&figure(&svg, "Residual on held-out recordings, before and after, against the noise floor."));
     }
@@ -41,7 +45,7 @@ pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Strin
         html.push_str(&heading("Base parameters before and after"));
         html.push_str(&symbol_table(&base_parameters(&page.base_parameters)));
         html.push_str(&remark(
-            "Before: as identified, without the effects. After: fitted together with them. Each ± is one standard error, and \
+            "Before: as identified. After: fitted together with what was added. Each ± is one standard error, and \
              says how well the recordings determine a value if the model is right.",
         ));
     }
@@ -72,13 +76,13 @@ pub(super) fn unknown(page: &DiagnosisPage, recordings: &[Samples]) -> Result<St
                 percent(left)
             ))
         }
-        None => paragraph("What is left does not exceed the noise floor."),
+        None => paragraph("The residual does not exceed the noise floor."),
     };
     html.push_str(&whiteness::whiteness(recordings)?);
     if unknown.regions.is_empty() {
         html.push_str(&paragraph("No structure is left that would stand out of the noise."));
     } else {
-        html.push_str(&heading("Structure that is left"));
+        html.push_str(&heading("Unmodelled structure"));
         html.push_str(&table(&regions_table(&unknown.regions)));
     }
     let open: Vec<String> = page
@@ -87,11 +91,11 @@ pub(super) fn unknown(page: &DiagnosisPage, recordings: &[Samples]) -> Result<St
         .filter(|effect| !effect.alternatives.is_empty())
         .map(|effect| {
             let ids: Vec<&str> = effect.alternatives.iter().map(|alternative| alternative.id.as_str()).collect();
-            format!("What is named {} may be {} instead.", effect.id, ids.join(" or "))
+            format!("{} may be {} instead.", effect.id, ids.join(" or "))
         })
         .collect();
     if !open.is_empty() {
-        html.push_str(&heading("What these recordings cannot decide"));
+        html.push_str(&heading("Not distinguishable by these recordings"));
         html.push_str(&list(&open));
     }
     if !unknown.implausible.is_empty() {
@@ -109,11 +113,14 @@ pub(super) fn unknown(page: &DiagnosisPage, recordings: &[Samples]) -> Result<St
 
 /// Values before and after, with how far each moved.
 fn base_parameters(parameters: &[PageBaseParameter]) -> Table {
-    let mut rows = Table::new(["symbol", "parameter", "before", "", "after", "", "change / standard error"]);
+    let mut rows = Table::new(["symbol", "parameter", "before", "after", "change / standard error"]);
     for entry in parameters {
-        let value = |estimate: &PageEstimate| match estimate.stderr {
-            Some(stderr) => engineering_with_stderr(estimate.value, stderr, &entry.unit),
-            None => engineering(estimate.value, &entry.unit, 3),
+        let value = |estimate: &PageEstimate| {
+            let value = match estimate.stderr {
+                Some(stderr) => engineering_with_stderr(estimate.value, stderr, &entry.unit),
+                None => engineering(estimate.value, &entry.unit, 3),
+            };
+            if estimate.status.is_empty() { value } else { format!("{value}, {}", estimate.status) }
         };
         let known = entry.before.stderr.is_some() && entry.after.stderr.is_some();
         let errors: f64 =
@@ -123,9 +130,7 @@ fn base_parameters(parameters: &[PageBaseParameter]) -> Table {
             entry.symbol.clone(),
             entry.name.clone(),
             value(&entry.before),
-            entry.before.status.clone(),
             value(&entry.after),
-            entry.after.status.clone(),
             if known && change.is_finite() { significant(change, 2) } else { "–".to_owned() },
         ]);
     }
@@ -157,7 +162,7 @@ pub(super) fn next(experiment: Option<&PageExperiment>) -> String {
 }
 
 /// Section: how the diagnosis came about.
-pub(super) fn appendix(appendix: &PageAppendix) -> String {
+pub(crate) fn appendix(appendix: &PageAppendix) -> String {
     let mut html = String::new();
     let facts = [("muscle", &appendix.muscle), ("date", &appendix.date), ("written by", &appendix.tool)];
     let mut rows = Table::new(["", ""]);

@@ -15,7 +15,7 @@ pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], after: bool) -> Re
     let height = 44.0 + group * fits.len() as f64 + 46.0;
     let largest = fits.iter().flat_map(|(_, fit)| [fit.rmse_before_n, fit.rmse_after_n, fit.noise_floor_n]);
     let largest = largest.filter(|value| value.is_finite()).fold(0.0, f64::max);
-    Canvas::document(1040, height as u32, title, |canvas, sheet| {
+    Canvas::document(900, height as u32, title, |canvas, sheet| {
         let panel = Panel {
             frame: Rect { left: 190.0, top: 36.0, right: sheet.right - 90.0, bottom: height - 46.0 },
             x: Axis::exact("residual, root mean square (N)", 0.0, 1.04 * largest, 8),

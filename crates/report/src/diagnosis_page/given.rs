@@ -5,10 +5,13 @@ use crate::Table;
 use crate::number::{engineering, significant};
 use crate::page::html::{heading, list, newtons, paragraph, table};
 
+/// Standard errors below which a parameter has not moved.
+const HARDLY: f64 = 0.05;
+
 /// Part of the section on the mismatch.
 pub(super) fn given(given: &PageGiven) -> String {
     let held_out =
-        given.holdout_rmse_n.map_or(String::new(), |[rmse_n, _]| format!(", {} on what was held out", newtons(rmse_n)));
+        given.holdout_rmse_n.map_or(String::new(), |[rmse_n, _]| format!(", {} on held-out ones", newtons(rmse_n)));
     let verdict = if given.misses {
         " It misses them: they are of another muscle, or an instrument reads otherwise."
     } else {
@@ -27,9 +30,15 @@ pub(super) fn given(given: &PageGiven) -> String {
     if given.shifts.is_empty() {
         return html;
     }
-    let mut shifts = Table::new(["parameter", "as given", "refitted", "standard errors"]);
+    if given.shifts.iter().all(|shift| shift.standard_errors.is_none_or(|errors| errors.abs() < HARDLY)) {
+        let words = "The refit moves no parameter by more than a twentieth of its standard error.";
+        return html + &paragraph(words);
+    }
+    let mut shifts = Table::new(["parameter", "as given", "refitted", "moved, in standard errors"]);
     for shift in &given.shifts {
-        let errors = shift.standard_errors.map_or("not known".to_owned(), |errors| significant(errors, 2));
+        let errors = shift.standard_errors.map_or("not known".to_owned(), |errors| {
+            if errors.abs() < HARDLY { "0".to_owned() } else { significant(errors, 2) }
+        });
         let value = |value: f64| engineering(value, &shift.unit, 4);
         shifts.row([shift.parameter.clone(), value(shift.given), value(shift.refitted), errors]);
     }

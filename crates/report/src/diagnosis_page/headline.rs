@@ -14,7 +14,7 @@ pub(super) fn headline(page: &DiagnosisPage) -> String {
     };
     let words = match &page.as_given {
         Some(given) if given.misses => "The model as given is not that of these recordings",
-        Some(given) if !given.holdout_missed.is_empty() => "What was held out differs from what was fitted",
+        Some(given) if !given.holdout_missed.is_empty() => "Held-out recordings differ from the fitted ones",
         _ => words,
     };
     let after = !page.effects.is_empty();
@@ -26,9 +26,9 @@ pub(super) fn headline(page: &DiagnosisPage) -> String {
     let floor = page.holdout.map(|fit| fit.noise_floor_n);
     let note = match floor {
         Some(floor) if newtons(floor) != newtons(page.estimation.noise_floor_n) => {
-            format!("what noise leaves of any model; {} on held-out recordings", newtons(floor))
+            format!("RMSE that the sensors leave of a perfect model; {} on held-out recordings", newtons(floor))
         }
-        _ => "what noise leaves of any model".to_owned(),
+        _ => "RMSE that the sensors leave of a perfect model".to_owned(),
     };
     cards.push_str(&card("Noise floor", &newtons(page.estimation.noise_floor_n), &note));
     let mut html = format!(

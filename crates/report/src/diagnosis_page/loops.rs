@@ -155,7 +155,7 @@ pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
         .iter()
         .map(|(force_n, _, _)| force_n.iter().zip(x).map(|(force_n, x)| force_n - course.at(*x)).collect())
         .collect();
-    Canvas::document(1040, 400, "A loop before and after", |canvas, sheet| {
+    Canvas::document(900, 400, "A loop before and after", |canvas, sheet| {
         let [left, right] = sheet.inset(0.0, 28.0, 0.0, 0.0).columns([1.0, 1.0], 12.0);
         let mut draw = |cell: Rect, title: &str, y_title: &str, lines: &[(&[f64], Color, f64)]| {
             let (lowest, highest) = extent(lines.iter().flat_map(|(force_n, _, _)| force_n.iter().copied()));
@@ -171,11 +171,11 @@ pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
         };
         draw(left, "Force", "force (N)", &lines);
         let without = [0, 1, 2].map(|line| (without[line].as_slice(), lines[line].1, lines[line].2));
-        draw(right, "The same, less the mean course of the measured force", "difference (N)", &without);
+        draw(right, "Less the mean course of the measured force", "difference (N)", &without);
         let keys = [
             Key::new("measured", Mark::Line(4.0), palette::SILVER),
             Key::new("base model", Mark::Line(2.0), BEFORE),
-            Key::new("with the named effects", Mark::Line(2.0), AFTER),
+            Key::new("augmented model", Mark::Line(2.0), AFTER),
         ];
         legend(canvas, &keys, sheet.right - 16.0, 14.0);
     })

@@ -21,18 +21,18 @@ mod content;
 mod coordinate;
 mod correlation;
 mod empirical;
-mod ending;
+pub(crate) mod ending;
 mod fit_bars;
 mod given;
 mod headline;
 mod loops;
 mod named;
-mod over_time;
+pub(crate) mod over_time;
 mod place;
 mod profiles;
 mod recording;
 mod residual_maps;
-mod samples;
+pub(crate) mod samples;
 mod strip;
 mod telling_apart;
 mod whiteness;
@@ -59,18 +59,22 @@ pub fn diagnosis_page(page: &DiagnosisPage) -> Result<String, FigureError> {
     let mut recordings = page.recordings.iter().map(Samples::new).collect::<Result<Vec<_>, _>>()?;
     recordings.retain(|samples| !samples.force_n.is_empty());
     let noise_n = page.estimation.noise_floor_n;
+    let floor = |samples: &Samples| match page.holdout {
+        Some(fit) if samples.held_out => fit.noise_floor_n,
+        _ => page.estimation.noise_floor_n,
+    };
     let sections: [Section; 9] = [
         ("mismatch", "Is there a mismatch?", mismatch(page)?),
-        ("time", "Measured and modelled force over time", over_time::over_time(page, &recordings)?),
+        ("time", "Measured and modelled force over time", over_time::over_time(&recordings, floor, over_time::NAMES)?),
         ("where", "Where do model and recordings differ?", place::place(page, &recordings)?),
-        ("what", "What was left out?", named::named(page) + &empirical::empirical(page.empirical.as_ref())?),
-        ("gain", "What does it buy?", ending::gain(page, &recordings)?),
+        ("what", "Which physics is missing?", named::named(page) + &empirical::empirical(page.empirical.as_ref())?),
+        ("gain", "What improves on held-out recordings?", ending::gain(page, &recordings)?),
         ("unknown", "What is still unknown?", ending::unknown(page, &recordings)?),
-        ("next", "What to record next", ending::next(page.next_experiment.as_ref())),
-        ("apart", "What could these recordings tell apart at all?", {
+        ("next", "Which recording next?", ending::next(page.next_experiment.as_ref())),
+        ("apart", "Which effects can these recordings distinguish?", {
             telling_apart::telling_apart(page.isolability.as_ref(), noise_n)?
         }),
-        ("appendix", "Appendix: how this came about", ending::appendix(&page.appendix)),
+        ("appendix", "Appendix: provenance", ending::appendix(&page.appendix)),
     ];
     Ok(document(&page.title, &headline::headline(page), &sections, "", over_time::SCRIPT))
 }

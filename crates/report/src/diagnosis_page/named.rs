@@ -9,7 +9,7 @@ use crate::{Table, number};
 pub(super) fn named(page: &DiagnosisPage) -> String {
     let mut html = match page.effects.len() {
         0 if page.verdict == PageVerdict::Consistent => paragraph("Nothing that matters in these recordings."),
-        0 => paragraph("No effect of the catalogue explains what is there."),
+        0 => paragraph("No effect of the catalogue explains the mismatch."),
         1 => paragraph("One effect that the model leaves out is named."),
         n => paragraph(&format!(
             "{n} effects that the model leaves out are named, the one with the largest log predictive ratio first."
@@ -23,21 +23,34 @@ pub(super) fn named(page: &DiagnosisPage) -> String {
         if telling.is_empty() {
             html.push_str(&paragraph("No candidate of the catalogue explains anything by itself."));
         } else {
-            html.push_str(&table(&candidates(&telling)));
+            let (shown, more): (Vec<_>, Vec<_>) = telling
+                .iter()
+                .enumerate()
+                .map(|(rank, candidate)| (rank, *candidate))
+                .partition(|(rank, candidate)| *rank < SHOWN || candidate.outcome == "named");
+            html.push_str(&table(&candidates(&shown.into_iter().map(|(_, candidate)| candidate).collect::<Vec<_>>())));
+            let more: Vec<&PageCandidate> = more.into_iter().map(|(_, candidate)| candidate).collect();
+            html.push_str(&folded(&more, "that were not named"));
         }
         html.push_str(&remark(
             "Each candidate alone, fitted jointly with the base model to all blocks but one and judged on that one, in \
              turn. The log predictive ratio is the sum over the blocks of ln(mean square without / mean square with).",
         ));
-        if !rest.is_empty() {
-            let n = rest.len();
-            html.push_str(&format!(
-                "<details>\n<summary>{n} more that explain nothing</summary>\n{}</details>\n",
-                table(&candidates(&rest))
-            ));
-        }
+        html.push_str(&folded(&rest, "that explain nothing"));
     }
     html
+}
+
+/// Candidates that are listed whether they were named or not.
+const SHOWN: usize = 6;
+
+/// Candidates folded below a line to click on; nothing where there are none.
+fn folded(rest: &[&PageCandidate], words: &str) -> String {
+    if rest.is_empty() {
+        return String::new();
+    }
+    let n = rest.len();
+    format!("<details>\n<summary>{n} more {words}</summary>\n{}</details>\n", table(&candidates(rest)))
 }
 
 /// Whether a candidate was named, or explains at least something by itself.
@@ -71,14 +84,14 @@ fn effect(effect: &PageEffect) -> String {
     if !effect.signature.is_empty() {
         html.push_str(&format!("<p><strong>Signature:</strong> {}</p>\n", escaped(&effect.signature)));
     }
-    html.push_str("<h4>What it is confused with</h4>\n");
+    html.push_str("<h4>Confused with</h4>\n");
     if effect.alternatives.is_empty() {
-        html.push_str(&paragraph("These recordings tell it from every other effect of the catalogue."));
+        html.push_str(&paragraph("These recordings distinguish it from every other effect of the catalogue."));
     } else {
         html.extend(effect.alternatives.iter().map(alternative));
     }
     if !effect.look_alikes.is_empty() {
-        html.push_str(&paragraph("Other recordings may not tell it from:"));
+        html.push_str(&paragraph("Other recordings may not distinguish it from:"));
         html.extend(effect.look_alikes.iter().map(alternative));
     }
     if !effect.separating_test.is_empty() {
@@ -131,7 +144,7 @@ fn alternative(alternative: &PageAlternative) -> String {
         html.push_str(&format!("<br>\nAlike because {}.", escaped(because.trim_end_matches('.'))));
     }
     if !test.is_empty() {
-        html.push_str(&format!(" Told apart by {}.", escaped(test.trim_end_matches('.'))));
+        html.push_str(&format!(" Distinguished by {}.", escaped(test.trim_end_matches('.'))));
     }
     html.push_str("</p>\n");
     html

@@ -10,6 +10,7 @@ for (const figure of document.querySelectorAll("figure.strip")) {
     Float64Array.from(words.subarray(index * n, (index + 1) * n), word => from + (to - from) * word / 65535);
   const time = column(0, ...layout.time);
   const names = ["measured", "before", "after"].slice(0, layout.lines);
+  const labels = layout.labels;
   const force = names.map((_, index) => column(index + 1, ...layout.force));
   const residual = force.slice(1).map(line => line.map((value, row) => force[0][row] - value));
   const steps = time.slice(1).map((value, row) => value - time[row]).sort();
@@ -125,8 +126,8 @@ for (const figure of document.querySelectorAll("figure.strip")) {
     tools.append(element);
     return element;
   };
-  for (const name of names) {
-    button(name, element => {
+  for (const [index, name] of names.entries()) {
+    button(labels[index], element => {
       const shown = element.getAttribute("aria-pressed") !== "true";
       element.setAttribute("aria-pressed", shown);
       for (const line of svg.querySelectorAll("." + name)) line.style.display = shown ? "" : "none";
@@ -165,7 +166,7 @@ for (const figure of document.querySelectorAll("figure.strip")) {
     const number = value => value.toFixed(2).replace("-", "−");
     cursor.setAttribute("d", `M${x(time[row]).toFixed(0)} ${up}v${height}`);
     readout.textContent = `${number(time[row])} s: ` +
-      names.map((name, index) => `${name} ${number(force[index][row])} N`).join(", ");
+      names.map((_, index) => `${labels[index]} ${number(force[index][row])} N`).join(", ");
   });
   const finish = event => {
     if (start !== null && Math.abs(at(event) - start) > (to - from) / 100) zoom(...[start, at(event)].sort((a, b) => a - b));

@@ -7,7 +7,6 @@
 
 use std::fmt::Write as _;
 
-use super::DiagnosisPage;
 use super::samples::Samples;
 use super::strip::{Strip, strip};
 use crate::FigureError;
@@ -23,15 +22,23 @@ const OPEN: usize = 4;
 const SAMPLES: usize = 50_000;
 
 /// What lets a reader zoom, read values off and hide lines. Other pages with strips like these take it from here.
-pub(super) const SCRIPT: &str = include_str!("over_time.js");
+pub(crate) const SCRIPT: &str = include_str!("over_time.js");
 
-pub(super) fn over_time(page: &DiagnosisPage, recordings: &[Samples]) -> Result<String, FigureError> {
+/// What the base model and the augmented one are called beside one another.
+pub(super) const NAMES: [&str; 2] = ["before", "after"];
+
+/// Strips of `recordings`; `floor` is the noise floor of one in N, `names` those of the two models.
+pub(crate) fn over_time(
+    recordings: &[Samples],
+    floor: impl Fn(&Samples) -> f64,
+    names: [&str; 2],
+) -> Result<String, FigureError> {
     if recordings.is_empty() {
         return Ok(remark("No samples were handed over to be drawn."));
     }
     let mut shown: Vec<&Samples> = recordings.iter().collect();
     let mut html = paragraph(
-        "Where a line leaves the band of the noise, the model is wrong by more than the sensors. Shaded samples are not counted. \
+        "Where a residual leaves the band of the noise, the model is wrong by more than the sensors. Shaded samples are not counted. \
          Drag across a figure to zoom in, double-click to see all of it again.",
     );
     if shown.len() > STRIPS {
@@ -43,14 +50,10 @@ pub(super) fn over_time(page: &DiagnosisPage, recordings: &[Samples]) -> Result<
         shown.truncate(STRIPS);
         html.push_str(&remark(&format!("The {STRIPS} of {} recordings that differ most.", recordings.len())));
     }
-    let floor = |samples: &Samples| match page.holdout {
-        Some(fit) if samples.held_out => fit.noise_floor_n,
-        _ => page.estimation.noise_floor_n,
-    };
     let each = SAMPLES / shown.len();
     let mut folded = String::new();
     for (index, samples) in shown.iter().enumerate() {
-        let figure = figure(samples, &strip(samples, floor(samples))?, each);
+        let figure = figure(samples, &strip(samples, floor(samples), names)?, (each, names));
         if index < OPEN { html.push_str(&figure) } else { folded.push_str(&figure) }
     }
     if shown.len() > OPEN {
@@ -61,7 +64,7 @@ pub(super) fn over_time(page: &DiagnosisPage, recordings: &[Samples]) -> Result<
 }
 
 /// A strip with its samples, at most `most` of them.
-fn figure(samples: &Samples, strip: &Strip, most: usize) -> String {
+fn figure(samples: &Samples, strip: &Strip, (most, names): (usize, [&str; 2])) -> String {
     let every = samples.force_n.len().div_ceil(most.max(1)).max(1);
     let rows: Vec<usize> = (0..samples.force_n.len()).step_by(every).collect();
     let [from_s, to_s] = strip.time_s;
@@ -77,12 +80,14 @@ fn figure(samples: &Samples, strip: &Strip, most: usize) -> String {
         format!("[{x},{y},{width},{height}]")
     };
     let layout = format!(
-        "{{\"frames\":[{},{}],\"residual\":[{},{}],\"time\":[{from_s},{to_s}],\"force\":[{low},{high}],\"lines\":{}}}",
+        "{{\"frames\":[{},{}],\"residual\":[{},{}],\"time\":[{from_s},{to_s}],\"force\":[{low},{high}],\"lines\":{},\"labels\":[\"measured\",\"{}\",\"{}\"]}}",
         frame(&strip.frames[0]),
         frame(&strip.frames[1]),
         strip.ends_n[1][0],
         strip.ends_n[1][1],
-        lines.len()
+        lines.len(),
+        names[0],
+        names[1]
     );
     let mut bytes = Vec::with_capacity(rows.len() * 9);
     let word = |value: f64, from: f64, to: f64| {

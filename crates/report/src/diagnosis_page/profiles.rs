@@ -19,7 +19,7 @@ const SHOWN: [PageCoordinate; 7] = [
 ];
 const COLUMNS: usize = 4;
 /// Size of a panel with its axis and title, in pixels.
-const CELL: (f64, f64) = (236.0, 236.0);
+const CELL: (f64, f64) = (204.0, 226.0);
 /// Room for the common vertical axis.
 const LEFT: f64 = 74.0;
 /// Bins along a coordinate.
@@ -36,7 +36,7 @@ pub(super) fn profiles(recordings: &[Samples], regions: &[PageRegion], noise_n: 
     let limit = if limit > 0.0 { limit } else { 1.0 };
     let rows = SHOWN.len().div_ceil(COLUMNS);
     let height = 34.0 + CELL.1 * rows as f64;
-    Canvas::document(1040, height as u32, "Residual against each coordinate", |canvas, sheet| {
+    Canvas::document(900, height as u32, "Residual against each coordinate", |canvas, sheet| {
         for (index, profile) in profiles.iter().enumerate() {
             let (row, column) = (index / COLUMNS, index % COLUMNS);
             let (left, top) = (LEFT + CELL.0 * column as f64, 34.0 + CELL.1 * row as f64);
@@ -180,7 +180,7 @@ fn axis(coordinate: PageCoordinate, recordings: &[Samples]) -> Axis {
         PageCoordinate::TravelSinceReversal | PageCoordinate::TimeSinceLastMove | PageCoordinate::Speed
     );
     if skewed {
-        // What matters sits at the small values: behind the reversal, right after the stop.
+        // What matters sits at the small values: after the reversal, right after the stop.
         let positive: Vec<f64> = values.iter().copied().filter(|value| *value > 0.0).collect();
         let (low, high) = (quantile(&positive, 0.02), quantile(&positive, 0.999));
         if high > 20.0 * low {

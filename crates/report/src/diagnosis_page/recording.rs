@@ -33,3 +33,29 @@ pub struct PageRecording {
     /// Whether nothing was fitted to it.
     pub held_out: bool,
 }
+
+impl PageRecording {
+    /// What is drawn over time alone: force as measured and of two models, and whether a sample counts.
+    pub fn over_time(
+        name: String,
+        [time_s, force_n, base_force_n, model_force_n]: [Vec<f64>; 4],
+        settled: Vec<bool>,
+    ) -> Self {
+        let none = vec![0.0; time_s.len()];
+        Self {
+            name,
+            pressure_kpa: none.clone(),
+            contraction_percent: none.clone(),
+            speed_mm_per_s: none.clone(),
+            travel_mm: none.clone(),
+            rest_s: none.clone(),
+            cycle: none,
+            time_s,
+            force_n,
+            base_force_n,
+            model_force_n: Some(model_force_n),
+            settled,
+            ..Self::default()
+        }
+    }
+}

@@ -33,7 +33,7 @@ pub(super) fn residual_maps(
     let mean_bar = ColorBar { title: "mean (N)".to_owned(), from: -mean_limit, to: mean_limit, color: mean_color };
     let rms_bar = ColorBar { title: "rms (N)".to_owned(), from: 0.0, to: rms_limit, color: size_color };
     let height = if after { 2.0 * ROW } else { ROW };
-    Canvas::document(1040, height as u32, "Residual over pressure and contraction", |canvas, sheet| {
+    Canvas::document(900, height as u32, "Residual over pressure and contraction", |canvas, sheet| {
         let [left, right] = sheet.columns([1.0, 1.0], 20.0);
         let mut draw = |cell: Rect, title: &str, cells: &[Sum], of: fn(&Sum) -> Option<f64>, bar: &ColorBar| {
             canvas.bold(title, (cell.left + 8.0, cell.top + 15.0), Anchor::Start, 14.0, palette::INK);

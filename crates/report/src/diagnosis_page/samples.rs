@@ -5,24 +5,24 @@ use crate::FigureError;
 
 /// Samples of one recording with finite forces.
 #[derive(Debug)]
-pub(super) struct Samples {
-    pub(super) name: String,
-    pub(super) held_out: bool,
-    pub(super) stretches: Vec<(f64, f64)>,
-    pub(super) settled: Vec<bool>,
-    pub(super) force_n: Vec<f64>,
-    pub(super) base_n: Vec<f64>,
-    pub(super) model_n: Option<Vec<f64>>,
+pub(crate) struct Samples {
+    pub(crate) name: String,
+    pub(crate) held_out: bool,
+    pub(crate) stretches: Vec<(f64, f64)>,
+    pub(crate) settled: Vec<bool>,
+    pub(crate) force_n: Vec<f64>,
+    pub(crate) base_n: Vec<f64>,
+    pub(crate) model_n: Option<Vec<f64>>,
     /// Measured less base force.
-    pub(super) before_n: Vec<f64>,
+    pub(crate) before_n: Vec<f64>,
     /// Measured force less that of base and effects.
-    pub(super) after_n: Option<Vec<f64>>,
+    pub(crate) after_n: Option<Vec<f64>>,
     /// In the order of [`PageCoordinate::ALL`].
     columns: [Vec<f64>; 8],
 }
 
 impl Samples {
-    pub(super) fn new(recording: &PageRecording) -> Result<Self, FigureError> {
+    pub(crate) fn new(recording: &PageRecording) -> Result<Self, FigureError> {
         check_columns(recording)?;
         let model = recording.model_force_n.as_deref();
         let shown: Vec<usize> = (0..recording.time_s.len())
@@ -48,28 +48,28 @@ impl Samples {
         })
     }
 
-    pub(super) fn column(&self, coordinate: PageCoordinate) -> &[f64] {
+    pub(crate) fn column(&self, coordinate: PageCoordinate) -> &[f64] {
         let at = PageCoordinate::ALL.iter().position(|other| *other == coordinate);
         &self.columns[at.unwrap_or(0)]
     }
 
     /// Time, in s.
-    pub(super) fn time_s(&self) -> &[f64] {
+    pub(crate) fn time_s(&self) -> &[f64] {
         self.column(PageCoordinate::Time)
     }
 
     /// Root mean square of `residual_n` over all samples.
-    pub(super) fn rms_all(&self, residual_n: &[f64]) -> f64 {
+    pub(crate) fn rms_all(&self, residual_n: &[f64]) -> f64 {
         (residual_n.iter().map(|residual_n| residual_n * residual_n).sum::<f64>() / residual_n.len() as f64).sqrt()
     }
 
     /// Residuals after, or before where there is no after.
-    pub(super) fn last_n(&self) -> &[f64] {
+    pub(crate) fn last_n(&self) -> &[f64] {
         self.after_n.as_deref().unwrap_or(&self.before_n)
     }
 
     /// Root mean square of `residual_n` where the direction is settled, or over all samples where it nowhere is.
-    pub(super) fn rms(&self, residual_n: &[f64]) -> f64 {
+    pub(crate) fn rms(&self, residual_n: &[f64]) -> f64 {
         let all = !self.settled.contains(&true);
         let chosen = residual_n.iter().zip(&self.settled).filter(|(_, settled)| all || **settled);
         let (n, sum) = chosen.fold((0.0, 0.0), |(n, sum), (residual, _)| (n + 1.0, sum + residual * residual));
@@ -113,7 +113,7 @@ fn check_columns(recording: &PageRecording) -> Result<(), FigureError> {
 }
 
 /// Lowest and highest of finite `values`; NaN both where there is none.
-pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let finite = values.into_iter().filter(|value| value.is_finite());
     finite.fold((f64::NAN, f64::NAN), |(lowest, highest), value| (lowest.min(value), highest.max(value)))
 }

@@ -10,9 +10,9 @@ use crate::residual_cells::quantile;
 /// Points of a line, which are about as many as pixels.
 const POINTS: usize = 1000;
 /// Size of the sheet, in pixels.
-const SHEET: (u32, u32) = (1040, 372);
-/// Force as measured.
-const MEASURED: Color = palette::INK;
+const SHEET: (u32, u32) = (900, 372);
+/// Force as measured: broad and pale, so that it shows below a model that follows it.
+const MEASURED: Color = palette::INK.faded(0.4);
 /// Samples that are not counted.
 const UNCOUNTED: Color = palette::SILVER.faded(0.3);
 
@@ -29,11 +29,11 @@ pub(super) struct Strip {
     pub(super) time_s: [f64; 2],
 }
 
-/// Draws the strip of `samples`.
-pub(super) fn strip(samples: &Samples, noise_n: f64) -> Result<Strip, FigureError> {
+/// Draws the strip of `samples`; `names` are those of the two models.
+pub(super) fn strip(samples: &Samples, noise_n: f64, names: [&str; 2]) -> Result<Strip, FigureError> {
     let [force, residual] = panels(samples, noise_n);
     let svg = Canvas::document(SHEET.0, SHEET.1, &format!("{} over time", samples.name), |canvas, sheet| {
-        header(canvas, sheet, samples);
+        header(canvas, sheet, samples, names);
         canvas.group(&[("class", "axes")], |canvas| {
             force.draw_frame(canvas);
             residual.draw_frame(canvas);
@@ -78,7 +78,7 @@ fn panels(samples: &Samples, noise_n: f64) -> [Panel; 2] {
     ]
 }
 
-fn header(canvas: &mut Canvas<'_>, sheet: Rect, samples: &Samples) {
+fn header(canvas: &mut Canvas<'_>, sheet: Rect, samples: &Samples, names: [&str; 2]) {
     let left = 74.0;
     canvas.bold(&samples.name, (left, 14.0), Anchor::Start, 13.5, palette::INK);
     if samples.held_out {
@@ -93,14 +93,14 @@ fn header(canvas: &mut Canvas<'_>, sheet: Rect, samples: &Samples) {
     let all = pair(&|residual_n| samples.rms_all(residual_n));
     let text = format!("RMSE {counted} counted, {all} all samples");
     canvas.text(&text, (sheet.right - 12.0, 14.0), Anchor::End, 12.0, palette::GRAY);
-    let mut keys = vec![Key::new("measured", Mark::Line(2.0), MEASURED)];
+    let mut keys = vec![Key::new("measured", Mark::Line(3.2), MEASURED)];
     if samples.after_n.is_some() {
-        keys.push(Key::new("before", Mark::Line(2.0), BEFORE));
-        keys.push(Key::new("after", Mark::Line(2.0), AFTER));
+        keys.push(Key::new(names[0], Mark::Line(2.0), BEFORE));
+        keys.push(Key::new(names[1], Mark::Line(2.0), AFTER));
     } else {
         keys.push(Key::new("base model", Mark::Line(2.0), BEFORE));
     }
-    keys.push(Key::new("±2 standard deviations of the noise", Mark::Patch, NOISE));
+    keys.push(Key::new("±2 σ of the noise", Mark::Patch, NOISE));
     if samples.settled.contains(&false) {
         keys.push(Key::new("not counted", Mark::Patch, UNCOUNTED));
     }
@@ -119,7 +119,7 @@ fn draw_force(canvas: &mut Canvas<'_>, panel: &Panel, samples: &Samples) {
         let mut draw = |name: &str, values: &[f64], color, width| {
             canvas.group(&[("class", name)], |canvas| line.line(canvas, panel, values, (color, width), POINTS));
         };
-        draw("measured", &samples.force_n, MEASURED, 2.0);
+        draw("measured", &samples.force_n, MEASURED, 3.2);
         draw("before", &samples.base_n, BEFORE, 1.2);
         if let Some(model_n) = &samples.model_n {
             draw("after", model_n, AFTER, 1.2);

@@ -1,4 +1,4 @@
-//! Section: what the recordings could tell apart at all.
+//! Section: which effects the recordings can distinguish.
 
 use super::PageIsolability;
 use crate::FigureError;
@@ -15,19 +15,18 @@ pub(super) fn telling_apart(isolability: Option<&PageIsolability>, noise_n: f64)
         return Ok(paragraph("This was not examined."));
     };
     let mut html = paragraph(
-        "Before anything is blamed: the residual that each effect of the catalogue would leave in these recordings, at \
-         a typical size and after a refit of the base model, compared with that of every other one. Strongly colored cells \
-         are pairs that look alike here, whatever the analysis; the figure behind each name is how large a residual it \
-         would leave.",
+        "The residual that each effect of the catalogue would leave in these recordings, at a typical size and after a \
+         refit of the base model, compared with that of every other effect. Dark cells are pairs that these recordings \
+         hardly distinguish, by whatever method; the number after a name is the residual that it would leave.",
     );
     html.push_str(&figure(
         &matrix(isolability)?,
-        "Size of the cosine between the residuals of each pair: 0 for residuals that have nothing in common, 1 for \
+        "Residual similarity of each pair, the size of a cosine in percent: 0 for residuals with nothing in common, 100 for \
          residuals of the same shape.",
     ));
     let pairs = alike(isolability);
     if !pairs.is_empty() {
-        html.push_str(&paragraph("These recordings cannot tell apart:"));
+        html.push_str(&paragraph("These recordings cannot distinguish:"));
         html.push_str(&list(&pairs));
     }
     let hidden: Vec<&str> = isolability
@@ -96,7 +95,7 @@ fn matrix(isolability: &PageIsolability) -> Result<String, FigureError> {
     };
     // The axis has no title, whose room the sheet can do without. Cells stay about square between the labels on both sides.
     let height = (26 * n as u32 + 240).clamp(360, 940);
-    Canvas::document(1040, height, "What these recordings can tell apart", |canvas, sheet| {
+    Canvas::document(900, height, "Which effects these recordings can distinguish", |canvas, sheet| {
         let spare = (sheet.width() - 84.0 - 270.0 - 40.0 * n as f64).max(0.0);
         map.draw(canvas, sheet.inset(0.0, 0.0, spare, -22.0));
     })

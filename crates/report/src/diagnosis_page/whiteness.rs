@@ -1,4 +1,4 @@
-//! Whether what is left is white, and whether it still follows the channels.
+//! Whether the residual is white, and whether it still follows the channels.
 
 use super::PageCoordinate;
 use super::correlation::{Correlation, autocorrelation, cross_correlation};
@@ -37,13 +37,13 @@ pub(super) fn whiteness(recordings: &[Samples]) -> Result<String, FigureError> {
         ("Contraction with residual", length.0, length.1),
     ];
     let which = if held_out { "held-out recordings" } else { "the recordings used for fitting" };
-    let mut html = heading("Is what is left white?");
+    let mut html = heading("Is the residual white?");
     html.push_str(&paragraph(&words(&panels, which)));
     html.push_str(&figure(
         &drawn(&panels)?,
         "Autocorrelation of the residual, and its cross-correlation with pressure and contraction (length), over the lag by which \
-         the residual follows. Inside the gray band in 99 of 100 lags where the residual is white, or independent of the \
-         channel. Counted samples alone.",
+         the residual follows. A residual that is white, or independent of the channel, stays inside the band at 99 of 100 lags. Counted \
+         samples only.",
     ));
     Ok(html)
 }
@@ -68,9 +68,9 @@ fn words(panels: &[Shown; 3], which: &str) -> String {
         let Some(cross) = last(shown) else { continue };
         let (lag_s, value) = cross.largest(false);
         let channel = if shown.0.starts_with('P') { "pressure" } else { "contraction" };
-        let correlated = if value.abs() > cross.band { "it is correlated with" } else { "it is not correlated with" };
+        let verdict = if value.abs() > cross.band { "outside the band of" } else { "within the band of" };
         text.push_str(&format!(
-            " By up to {} at {} s {correlated} {channel} (band ±{}).",
+            " Its largest correlation with {channel}, {} at a lag of {} s, lies {verdict} ±{}.",
             significant(value, 2),
             significant(lag_s, 2),
             significant(cross.band, 2)
@@ -80,7 +80,7 @@ fn words(panels: &[Shown; 3], which: &str) -> String {
 }
 
 fn drawn(panels: &[Shown; 3]) -> Result<String, FigureError> {
-    Canvas::document(1040, 270, "Correlation of the residual", |canvas, sheet| {
+    Canvas::document(900, 270, "Correlation of the residual", |canvas, sheet| {
         for (index, (cell, (title, before, after))) in
             sheet.inset(0.0, 26.0, 0.0, 0.0).columns([1.0, 1.0, 1.0], 10.0).into_iter().zip(panels).enumerate()
         {

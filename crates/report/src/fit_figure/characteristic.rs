@@ -97,7 +97,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, (letter, abscissa): (&st
     draw_sweeps(canvas, &panel, abscissa, &sweeps);
     draw_means(canvas, &panel, &means);
     panel.label_right(canvas, &labels);
-    draw_legend(canvas, cell, (letter, abscissa), (&panel, &sweeps, &means));
+    draw_legend(canvas, cell, (letter, abscissa), (&sweeps, &means));
 }
 
 /// Where there is no sweep: measured against modelled force, what was fitted on the left and what was held out on the right.
@@ -305,7 +305,7 @@ fn draw_legend(
     canvas: &mut Canvas<'_>,
     cell: Rect,
     (letter, abscissa): (&str, Abscissa),
-    (panel, sweeps, means): (&Panel, &[Sweep<'_>], &[Mean]),
+    (sweeps, means): (&[Sweep<'_>], &[Mean]),
 ) {
     let what = match (abscissa, means.is_empty()) {
         (Abscissa::Length, true) => "Force against length, slow sweeps",
@@ -327,5 +327,5 @@ fn draw_legend(
         keys.push(Key::new("validation", Mark::Ring, palette::GRAY));
     }
     keys.push(Key::new("model", Mark::Line(1.2), palette::INK));
-    legend(canvas, &keys, panel.frame.right, y + 17.0);
+    legend(canvas, &keys, cell.right - 12.0, y + 17.0);
 }

@@ -1,4 +1,4 @@
-//! Panel e: how the swarm converged.
+//! Panel f: how the swarm converged.
 
 use super::SwarmStart;
 use super::clean::extent;
@@ -9,7 +9,7 @@ use crate::plot::{Axis, Canvas, Key, Mark, Panel, Rect, legend, note, palette, t
 const POINTS: usize = 1000;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, starts: &[SwarmStart], noise_n: Option<f64>) {
-    let (y, _) = title(canvas, cell, "e", "Convergence of the swarm");
+    let (y, _) = title(canvas, cell, "f", "Convergence of the swarm");
     let polished: Vec<f64> = starts.iter().filter_map(|start| start.polished_rmse_n).filter(is_positive).collect();
     let curves = starts.iter().flat_map(|start| start.best_rmse_n.iter().copied()).filter(is_positive);
     let (lowest, highest) = extent(curves.chain(polished.iter().copied()));

@@ -1,4 +1,4 @@
-//! Panel f: distribution of the residual against that of the noise.
+//! Panel e: distribution of the residual against that of the noise.
 
 use super::clean::{Clean, extent, quantile};
 use super::{ESTIMATION, Role, VALIDATION};
@@ -45,7 +45,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], no
         canvas.text(&text, at, Anchor::End, 11.5, palette::GRAY);
     }
 
-    let (y, _) = title(canvas, cell, "f", "Residual against noise");
+    let (y, _) = title(canvas, cell, "e", "Residual against noise");
     let mut keys = vec![Key::new("estimation", Mark::Patch, ESTIMATION.faded(0.55))];
     if has_validation {
         keys.push(Key::new("validation", Mark::Line(1.8), VALIDATION));

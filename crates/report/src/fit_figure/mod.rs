@@ -6,8 +6,8 @@
 //! | b     | force against pressure, likewise                                                   |
 //! | c     | residual over time, one recording after the other, against the noise of the gauge  |
 //! | d     | mean residual over pressure and length                                             |
-//! | e     | how the swarm converged, start by start                                            |
-//! | f     | distribution of the residual against that of the noise                             |
+//! | e     | distribution of the residual against that of the noise                             |
+//! | f     | how the swarm converged, start by start                                            |
 //!
 //! A recording at constant length is a vertical line in panel a, and one at constant pressure in panel b. There
 //! the panel shows averages at round levels of the other channel instead, joined across recordings. Where there is neither a
@@ -92,7 +92,7 @@ const ESTIMATION: Color = Color::new(0x6B, 0x7A, 0x8C);
 /// Color of validation recordings.
 const VALIDATION: Color = palette::GREEN;
 
-/// Draws the figure, as an SVG document of 1500 × 1100 pixels.
+/// Draws the figure, as an SVG document of 1000 × 1240 pixels: two columns, so that its letters are legible at 800.
 ///
 /// # Errors
 /// [`FigureError`] if no sample can be shown or columns differ in length.
@@ -103,18 +103,19 @@ pub fn fit_figure(figure: &FitFigure) -> Result<String, FigureError> {
         return Err(FigureError::NothingToDraw);
     }
     let noise_n = figure.noise_floor_n.filter(|noise_n| noise_n.is_finite() && *noise_n > 0.0);
-    Canvas::document(1500, 1100, &figure.title, |canvas, sheet| {
+    Canvas::document(1000, 1240, &figure.title, |canvas, sheet| {
         let page = sheet.inset(14.0, 0.0, 14.0, 8.0);
         headline(canvas, page, figure);
-        let [top, middle, bottom] = page.inset(0.0, 64.0, 0.0, 0.0).rows([400.0, 240.0, 360.0], 10.0);
-        let [left, right] = top.columns([1.0, 1.0], 18.0);
+        let rows = page.inset(0.0, 64.0, 0.0, 0.0).rows([340.0, 240.0, 340.0, 220.0], 10.0);
+        let [top, middle, third, bottom] = rows;
+        let [left, right] = top.columns([1.0, 1.0], 10.0);
         characteristic::draw(canvas, left, ("a", characteristic::Abscissa::Length), &recordings);
         characteristic::draw(canvas, right, ("b", characteristic::Abscissa::Pressure), &recordings);
         residual_time::draw(canvas, middle, &recordings, noise_n);
-        let [left, center, right] = bottom.columns([1.12, 1.0, 0.94], 10.0);
+        let [left, right] = third.columns([1.0, 1.0], 10.0);
         residual_map::draw(canvas, left, &recordings, noise_n);
-        convergence::draw(canvas, center, &figure.starts, noise_n);
         histogram::draw(canvas, right, &recordings, noise_n);
+        convergence::draw(canvas, bottom, &figure.starts, noise_n);
     })
 }
 

@@ -47,7 +47,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], no
     panel.line(canvas, [(0.0, 0.0), (end_s, 0.0)], palette::INK.faded(0.5), 0.75);
     names.draw(canvas, &panel, recordings);
 
-    let (y, _) = title(canvas, cell, "c", "Residual over time: measured less modelled force");
+    let (y, _) = title(canvas, cell, "c", "Residual over time");
     let mut keys = vec![Key::new("estimation", Mark::Line(1.6), ESTIMATION.toward(palette::INK, 0.2))];
     if recordings.iter().any(|recording| recording.role == Role::Validation) {
         keys.push(Key::new("validation", Mark::Line(1.6), VALIDATION.toward(palette::INK, 0.2)));

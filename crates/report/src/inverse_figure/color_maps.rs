@@ -292,7 +292,7 @@ fn keys(canvas: &mut Canvas<'_>, cell: Rect, y: f64, missing: bool) {
         keys.push(Key::new("no inverse", Mark::Patch, STRIPE.toward(MISSING, 0.5)));
     }
     // Left of the title of the color bar.
-    legend(canvas, &keys, cell.right - 110.0, y + 12.0);
+    legend(canvas, &keys, cell.right - 110.0, y + 14.0);
 }
 
 fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {

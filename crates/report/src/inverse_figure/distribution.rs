@@ -1,4 +1,4 @@
-//! Panel e: share of unseen points whose error is smaller.
+//! Panel d: share of unseen points whose error is smaller.
 
 use super::{CONTRACTING, EXTENDING};
 use crate::number::significant;
@@ -10,7 +10,7 @@ const MARKED: [f64; 3] = [50.0, 95.0, 100.0];
 const POINTS: usize = 400;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, errors_kpa: &[Vec<f64>; 2]) {
-    let (y, _) = title(canvas, cell, "e", "Errors on unseen points");
+    let (y, _) = title(canvas, cell, "d", "Errors on unseen points");
     let sorted = errors_kpa.each_ref().map(|errors| {
         let mut sizes: Vec<f64> = errors.iter().map(|error| error.abs()).filter(|size| *size > 0.0).collect();
         sizes.retain(|size| size.is_finite());

@@ -5,9 +5,9 @@
 //! | a     | pressure of the network over length and force, with lines of equal pressure             |
 //! | b     | how steeply force grows with pressure, over length and pressure: without it, no inverse |
 //! | c     | pressure of the network less the exact one, of the direction in which it errs more       |
-//! | d     | error over the epochs of the training                                                   |
-//! | e     | share of unseen points whose error is smaller, by direction                             |
-//! | f     | error by region                                                                         |
+//! | d     | share of unseen points whose error is smaller, by direction                             |
+//! | e     | error by region                                                                         |
+//! | f     | error over the epochs of the training                                                   |
 
 mod color_maps;
 mod distribution;
@@ -109,7 +109,7 @@ const CONTRACTING: Color = palette::BLUE;
 /// Color of the extending muscle.
 const EXTENDING: Color = palette::VERMILION;
 
-/// Draws the figure, as an SVG document of 1500 × 880 pixels.
+/// Draws the figure, as an SVG document of 1000 × 1130 pixels.
 ///
 /// # Errors
 /// [`FigureError`] if there is no cell with an inverse.
@@ -118,18 +118,19 @@ pub fn inverse_figure(figure: &InverseFigure) -> Result<String, FigureError> {
     if !figure.maps.iter().any(|map| map.cells.iter().any(found)) {
         return Err(FigureError::NothingToInvert);
     }
-    Canvas::document(1500, 880, &figure.title, |canvas, sheet| {
+    Canvas::document(1000, 1130, &figure.title, |canvas, sheet| {
         let page = sheet.inset(14.0, 0.0, 14.0, 8.0);
         headline(canvas, page, figure);
-        let [top, bottom] = page.inset(0.0, 64.0, 0.0, 0.0).rows([400.0, 380.0], 10.0);
-        let [left, center, right] = top.columns([1.0; 3], 6.0);
+        let [top, middle, bottom] = page.inset(0.0, 64.0, 0.0, 0.0).rows([1.0; 3], 8.0);
+        let [left, right] = top.columns([1.0; 2], 10.0);
         color_maps::pressure(canvas, left, &figure.maps[0]);
-        color_maps::slope(canvas, center, &figure.slopes);
-        color_maps::error(canvas, right, &figure.maps);
-        let [left, center, right] = bottom.columns([1.0, 1.0, 1.1], 10.0);
-        training::draw(canvas, left, figure);
-        distribution::draw(canvas, center, &figure.errors_kpa);
-        regions(canvas, right, &figure.regions);
+        color_maps::slope(canvas, right, &figure.slopes);
+        let [left, right] = middle.columns([1.0; 2], 10.0);
+        color_maps::error(canvas, left, &figure.maps);
+        distribution::draw(canvas, right, &figure.errors_kpa);
+        let [left, right] = bottom.columns([1.0; 2], 10.0);
+        regions(canvas, left, &figure.regions);
+        training::draw(canvas, right, figure);
     })
 }
 
@@ -140,7 +141,7 @@ fn headline(canvas: &mut Canvas<'_>, page: Rect, figure: &InverseFigure) {
 }
 
 fn regions(canvas: &mut Canvas<'_>, cell: Rect, regions: &[RegionBar]) {
-    title(canvas, cell, "f", "Error by region");
+    title(canvas, cell, "e", "Error by region");
     let bars = regions.iter().map(|region| Bar {
         name: region.name.clone(),
         value: region.rmse_kpa,

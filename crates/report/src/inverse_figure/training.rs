@@ -1,4 +1,4 @@
-//! Panel d: error over the epochs.
+//! Panel f: error over the epochs.
 
 use super::InverseFigure;
 use crate::number::significant;
@@ -8,7 +8,7 @@ use crate::plot::{Axis, Canvas, Key, Mark, Panel, Rect, legend, note, palette, t
 const POINTS: usize = 1000;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, figure: &InverseFigure) {
-    let (y, _) = title(canvas, cell, "d", "Training");
+    let (y, _) = title(canvas, cell, "f", "Training");
     let curves = [
         ("training", &figure.training_rmse_kpa, palette::SKY, 2.4),
         ("validation", &figure.validation_rmse_kpa, palette::INK, 1.2),

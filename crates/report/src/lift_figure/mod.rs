@@ -56,7 +56,7 @@ const RIGHT: Color = palette::VERMILION;
 /// Color of what should be.
 const REFERENCE: Color = Color::new(0xC4, 0xC4, 0xC4);
 
-/// Draws the figure, as an SVG document of 1500 × 700 pixels.
+/// Draws the figure, as an SVG document of 1000 × 920 pixels.
 ///
 /// # Errors
 /// [`FigureError`] if there is no instant to show.
@@ -64,12 +64,12 @@ pub fn lift_figure(figure: &LiftFigure) -> Result<String, FigureError> {
     if figure.arms.iter().all(|arm| arm.angle_rad.iter().all(|angle_rad| !angle_rad.is_finite())) {
         return Err(FigureError::NothingToDraw);
     }
-    Canvas::document(1500, 700, &figure.title, |canvas, sheet| {
+    Canvas::document(1000, 920, &figure.title, |canvas, sheet| {
         let page = sheet.inset(14.0, 0.0, 14.0, 8.0);
         canvas.bold(&figure.title, (page.left + 14.0, 26.0), Anchor::Start, 19.0, palette::INK);
         canvas.text(&figure.subtitle, (page.left + 14.0, 50.0), Anchor::Start, 13.5, palette::GRAY);
-        let rows = page.inset(0.0, 68.0, 0.0, 0.0).rows([1.0; 2], 8.0);
-        let cells = rows.map(|row| row.columns([1.0; 3], 14.0));
+        let rows = page.inset(0.0, 68.0, 0.0, 0.0).rows([1.0; 3], 8.0);
+        let cells = rows.map(|row| row.columns([1.0; 2], 14.0));
         let panels = panels(figure);
         for ((panel, cell), letter) in panels.iter().zip(cells.iter().flatten()).zip("abcdef".chars()) {
             draw(canvas, *cell, &letter.to_string(), panel, &figure.time_s);

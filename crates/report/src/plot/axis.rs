@@ -68,6 +68,27 @@ impl Axis {
         Self { title: title.into(), from, to, ticks, logarithmic: true }
     }
 
+    /// Ticks whose labels find room side by side: all of them, or else powers of ten where the axis has three or more, or
+    /// else every second, third, … of them.
+    pub(crate) fn labelled(&self, at: impl Fn(f64) -> f64, width: impl Fn(&str) -> f64) -> Vec<usize> {
+        let is_decade = |value: f64| self.logarithmic && (value.log10() - value.log10().round()).abs() < 1e-9;
+        let ends = |index: usize| {
+            let (value, label) = &self.ticks[index];
+            (at(*value) - 0.5 * width(label), at(*value) + 0.5 * width(label))
+        };
+        let roomy = |ticks: &[usize]| ticks.windows(2).all(|pair| ends(pair[0]).1 <= ends(pair[1]).0);
+        let all: Vec<usize> = (0..self.ticks.len()).collect();
+        let decades: Vec<usize> = all.iter().copied().filter(|index| is_decade(self.ticks[*index].0)).collect();
+        if roomy(&all) {
+            return all;
+        }
+        if decades.len() > 2 && roomy(&decades) {
+            return decades;
+        }
+        let every = |n: usize| -> Vec<usize> { all.iter().copied().step_by(n).collect() };
+        (2..=all.len()).map(every).find(|ticks| roomy(ticks)).unwrap_or_default()
+    }
+
     /// Where `value` lies, 0 at the lower and 1 at the upper end.
     pub fn fraction(&self, value: f64) -> f64 {
         if self.logarithmic {
@@ -155,6 +176,20 @@ mod tests {
             assert!(axis.ticks.len() > 1, "{lowest} {highest}: {axis:?}");
         }
         assert!(Axis::logarithmic("x", -1.0, f64::NAN).ticks.len() > 1);
+    }
+
+    #[test]
+    fn labels_that_would_touch_give_way_to_powers_of_ten() {
+        let axis = Axis::logarithmic("x", 0.05, 20.0);
+        let shown = |pixels: f64| -> Vec<&str> {
+            let kept = axis.labelled(|value| pixels * axis.fraction(value), |label| 8.0 * label.len() as f64);
+            kept.into_iter().map(|index| axis.ticks[index].1.as_str()).collect()
+        };
+        assert_eq!(shown(1000.0), ["0.05", "0.1", "0.2", "0.5", "1", "2", "5", "10", "20"]);
+        assert_eq!(shown(120.0), ["0.1", "1", "10"]);
+        let narrow = Axis::linear("x", 0.0, 100.0, 5);
+        let kept = narrow.labelled(|value| narrow.fraction(value) * 60.0, |label| 8.0 * label.len() as f64);
+        assert_eq!(kept, [0, 2, 4]);
     }
 
     #[test]

@@ -50,12 +50,14 @@ impl Panel {
     pub fn draw_x_axis(&self, canvas: &mut Canvas<'_>) {
         let Rect { left, right, bottom, .. } = self.frame;
         canvas.line([(left, bottom), (right, bottom)], palette::SILVER, 1.0);
-        for (value, label) in &self.x.ticks {
+        let labelled =
+            self.x.labelled(|value| self.at(value, self.y.from).0, |label| text_width(label, TICK_SIZE) + 4.0);
+        for (index, (value, label)) in self.x.ticks.iter().enumerate() {
             let x = self.at(*value, self.y.from).0;
             canvas.line([(x, bottom), (x, bottom + 4.0)], palette::SILVER, 1.0);
             if self.upward_labels {
                 canvas.upward(label, (x, bottom + 8.0), Anchor::End, TICK_SIZE, palette::GRAY);
-            } else {
+            } else if labelled.contains(&index) {
                 canvas.text(label, (x, bottom + 13.0), Anchor::Middle, TICK_SIZE, palette::GRAY);
             }
         }

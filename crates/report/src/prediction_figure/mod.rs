@@ -49,8 +49,8 @@ pub struct PredictionFigure {
     pub identified_mm: [f64; 2],
 }
 
-/// Measured force.
-const MEASURED: Color = palette::INK;
+/// Measured force: broad and pale below the modelled one, so that both are seen where they coincide.
+const MEASURED: Color = palette::INK.faded(0.35);
 /// Modelled force.
 const MODELLED: Color = palette::BLUE;
 /// Where the force is to be expected.

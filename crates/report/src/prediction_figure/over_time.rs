@@ -23,8 +23,8 @@ pub(super) fn force(canvas: &mut Canvas<'_>, cell: Rect, figure: &PredictionFigu
     line.band(canvas, &panel, [&low, &high], BAND);
     let mut keys = Vec::new();
     if !figure.force_n.is_empty() {
-        line.line(canvas, &panel, &figure.force_n, (MEASURED, 2.2), POINTS);
-        keys.push(Key::new("measured", Mark::Line(2.2), MEASURED));
+        line.line(canvas, &panel, &figure.force_n, (MEASURED, 4.0), POINTS);
+        keys.push(Key::new("measured", Mark::Line(4.0), MEASURED));
     }
     line.line(canvas, &panel, &figure.model_n, (MODELLED, 1.4), POINTS);
     keys.push(Key::new("modelled", Mark::Line(2.0), MODELLED));
