@@ -123,7 +123,9 @@ impl Diagnosis {
                 numbers.floor_n
             ));
         }
-        self.given.holdout_missed = held::missed(self, agreement)?;
+        let held = held::judge(self, agreement)?;
+        self.given.holdout_missed = held.missed;
+        self.noticed.extend(held.elsewhere);
         if self.given.misses || !self.given.holdout_missed.is_empty() {
             self.verdict = match self.verdict {
                 Verdict::Consistent | Verdict::Unexplained => Verdict::Unexplained,

@@ -199,7 +199,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let Answer { track, mut found, knocks, mut sizes } = answer;
     let held = (!holdout.is_empty()).then(|| Track::of(&holdout, model.direction, &model.force_model())).transpose()?;
     if let Some(held) = held.as_ref().filter(|_| knocks.is_none()) {
-        found = veto::confirmed(&question, &track, found, held);
+        found = veto::confirmed(&question, &track, found, held)?;
         sizes = Sizes::of(&found, &question.limits);
     }
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();

@@ -4,10 +4,11 @@
 //! several times theirs under both the base and the diagnosed model differs in something that no fit has seen: an instrument,
 //! or the muscle.
 
-use pam_identification::evaluate::{noise_floor_n, trace_augmented};
+use pam_identification::evaluate::{Trace, noise_floor_n, trace, trace_augmented};
 use pam_identification::faults::reading::{self, MISSES};
 
 use crate::artifact::{Agreement, together};
+use crate::coverage::Coverage;
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;
 
@@ -15,31 +16,87 @@ use crate::error::DiagnoseError;
 /// not say what eq. 11 is elsewhere (2.6 times was seen of a healthy muscle), and memory goes on from recording to recording.
 const MOST: f64 = 4.0;
 
-/// Each held-out recording that the diagnosed model misses, with the reason, in words.
-pub(crate) fn missed(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Vec<String>, DiagnoseError> {
+/// Share of a held-out recording within what was fitted from which on it is judged, there alone.
+const LEAST_WITHIN: f64 = 0.1;
+/// Share of it outside from which on that is said.
+const TOLD_OUTSIDE: f64 = 0.5;
+
+/// What was held out and is missed.
+#[derive(Debug, Default)]
+pub(crate) struct Held {
+    /// Each recording that the diagnosed model misses where the fitted ones have been, with the reason, in words.
+    pub(crate) missed: Vec<String>,
+    /// Each recording that is mostly elsewhere, in words.
+    pub(crate) elsewhere: Vec<String>,
+}
+
+/// Judges the held-out recordings of `diagnosis`.
+///
+/// # Errors
+/// [`DiagnoseError::Recording`] where samples cannot be read back, or the model has no force for one.
+pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held, DiagnoseError> {
     let model = diagnosis.augmented.without_events();
+    let fitted: Vec<Trace> =
+        diagnosis.estimation.iter().map(|prepared| trace(prepared, model.base())).collect::<Result<_, _>>()?;
+    let coverage = Coverage::of(&fitted);
     let fitted_n = together(&agreement.estimation).rmse_n;
     let base_n = together(&agreement.base_estimation).rmse_n;
-    let mut words = Vec::new();
+    let mut held = Held::default();
     for (index, prepared) in diagnosis.holdout.iter().enumerate() {
         let (left_n, base_left_n) = (agreement.holdout.each[index].rmse_n, agreement.base_holdout.each[index].rmse_n);
         let floor_n = noise_floor_n(std::slice::from_ref(prepared), model.base())?;
         let own_n = fitted_n.max(floor_n).max(diagnosis.sizes.sensors_n);
+        let trace = trace_augmented(prepared, &model, diagnosis.model.direction, index)?;
+        let path = &prepared.recording.path;
+        let within = within(&trace, &coverage);
+        let share_within = within.time_s.len() as f64 / trace.time_s.len().max(1) as f64;
+        if share_within < 1.0 - TOLD_OUTSIDE {
+            held.elsewhere.push(format!(
+                "{path} is at pressures and lengths that no fitted recording was near for {:.0} % of its samples: what the model \
+                 says there is extrapolated",
+                100.0 * (1.0 - share_within)
+            ));
+        }
         if left_n <= MISSES * own_n || base_left_n <= MISSES * base_n.max(floor_n) {
             continue;
         }
-        let trace = trace_augmented(prepared, &model, diagnosis.model.direction, index)?;
-        let reason = match reading::said(&reading::explain(&[trace], model.base(), own_n)) {
+        // A wrong unit or zero takes a recording elsewhere, too.
+        let instrument = reading::said(&reading::explain(&[trace], model.base(), own_n));
+        let left_n = if instrument.is_some() { left_n } else { left_n.min(rmse_n(&within)) };
+        let reason = match instrument {
             Some(instrument) => instrument,
-            None if left_n > MOST * own_n => {
+            None if left_n > MOST * own_n && share_within >= LEAST_WITHIN => {
                 "it is of another muscle, or differs in something that was not fitted".to_owned()
             }
             None => continue,
         };
-        let path = &prepared.recording.path;
-        words.push(format!(
+        held.missed.push(format!(
             "{path} is missed by {left_n:.2} N, where {own_n:.2} N are left of what was fitted: {reason}"
         ));
     }
-    Ok(words)
+    Ok(held)
+}
+
+/// The samples of `trace` that `coverage` holds.
+fn within(trace: &Trace, coverage: &Coverage) -> Trace {
+    let kept: Vec<usize> =
+        (0..trace.time_s.len()).filter(|&at| coverage.holds(trace.pressure_pa[at], trace.length_m[at])).collect();
+    let of = |values: &[f64]| kept.iter().map(|&at| values[at]).collect::<Vec<f64>>();
+    Trace {
+        time_s: of(&trace.time_s),
+        pressure_pa: of(&trace.pressure_pa),
+        length_m: of(&trace.length_m),
+        force_n: of(&trace.force_n),
+        model_n: of(&trace.model_n),
+        direction: of(&trace.direction),
+        settled: kept.iter().map(|&at| trace.settled[at]).collect(),
+    }
+}
+
+/// Root mean square of what the model of `trace` leaves of its counted samples, in N.
+fn rmse_n(trace: &Trace) -> f64 {
+    let counted = (0..trace.time_s.len()).filter(|&at| trace.settled[at]);
+    let (sum, n) =
+        counted.fold((0.0, 0_u32), |(sum, n), at| (sum + (trace.force_n[at] - trace.model_n[at]).powi(2), n + 1));
+    (sum / f64::from(n.max(1))).sqrt()
 }

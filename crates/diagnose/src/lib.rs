@@ -8,6 +8,7 @@ pub mod artifact;
 pub mod base;
 mod check;
 pub mod coordinates;
+mod coverage;
 pub mod diagnose;
 mod discover;
 pub mod error;

@@ -122,6 +122,8 @@ pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
                 "named".to_owned()
             } else if rivals.contains(&id) {
                 "cannot be distinguished from one named".to_owned()
+            } else if found.denied.contains(&id) {
+                "held-out recordings deny it".to_owned()
             } else if found.stand_ins.contains(&id) {
                 "gains something, and leaves far more than it explains".to_owned()
             } else if explains < 0.02 {

@@ -5,6 +5,7 @@ use pam_core::force::Parameter;
 use pam_identification::search_space::Free;
 
 use crate::state::{Setting, State};
+use crate::uncertainty::Uncertainty;
 
 /// Base parameters of `state` that no braided muscle has.
 pub fn implausible(setting: &Setting<'_>, state: &State) -> Vec<Implausible> {
@@ -39,16 +40,32 @@ pub fn implausible(setting: &Setting<'_>, state: &State) -> Vec<Implausible> {
         .collect()
 }
 
-/// Whether the base of `named` strains where that of `bare` did not: eq. 11 and an effect that pull against one another describe
-/// a static force that is neither's. Friction and the give of the strands are no part of it: they are known badly.
+/// Standard errors by which a parameter must lie outside its plausible range: one in forty by chance.
+const SURELY: f64 = 2.0;
+
+/// Whether the base of `named` surely strains where that of `bare` did not: eq. 11 and an effect that pull against one another
+/// describe a static force that is neither's. Friction and the give of the strands are no part of it: they are known badly. Nor is
+/// what the recordings do not determine, as one held length leaves most of eq. 11 open.
 pub(crate) fn strains(setting: &Setting<'_>, named: &State, bare: &State) -> bool {
     let vague = [Parameter::RubberFriction, Parameter::StrandFriction, Parameter::StrandCompliance]
         .map(|parameter| Free::One(parameter).name());
     let before = implausible(setting, bare);
-    implausible(setting, named)
-        .iter()
-        .filter(|strained| !vague.contains(&strained.parameter.as_str()))
-        .any(|strained| before.iter().all(|other| other.parameter != strained.parameter))
+    let mut strained = implausible(setting, named);
+    strained.retain(|strained| {
+        !vague.contains(&strained.parameter.as_str())
+            && before.iter().all(|other| other.parameter != strained.parameter)
+    });
+    if strained.is_empty() {
+        return false;
+    }
+    let Some(folds) = setting.fold_fits(named) else { return true };
+    let errors = Uncertainty::of(&folds, setting.space).base;
+    strained.iter().any(|strained| {
+        let [low, high] = strained.plausible;
+        let outside = (low - strained.value).max(strained.value - high);
+        let error = setting.space.free.iter().zip(&errors).find(|(free, _)| free.name() == strained.parameter);
+        error.is_none_or(|(_, error)| outside > SURELY * error)
+    })
 }
 
 #[cfg(test)]

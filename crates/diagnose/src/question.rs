@@ -94,6 +94,16 @@ impl<'a> Question<'a> {
         Ok(Answer { track, found, knocks: Some(knocks), sizes })
     }
 
+    /// The search on `track` alone, without the effects `excluded`.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit.
+    pub(crate) fn search_without(&self, track: &Track, excluded: &[&'static str]) -> Result<Found, DiagnoseError> {
+        let mut limits = self.limits.clone();
+        limits.excluded.extend(excluded.iter().map(|&id| id.to_owned()));
+        Ok(self.search(track, &limits, &|| {})?.0)
+    }
+
     fn search(&self, track: &Track, limits: &Limits, looked: &dyn Fn()) -> Result<(Found, Sizes), DiagnoseError> {
         let start = base::coordinates(self.model, &self.space);
         let found = search(&self.setting(track, &nuisance::NONE), &start, &self.model.force_model(), limits, looked)

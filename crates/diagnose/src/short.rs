@@ -81,7 +81,12 @@ mod tests {
         let held = |blocks: Vec<f64>| HeldOut { counts: vec![40.0; blocks.len()], blocks, floor_square: 0.3 };
         let taken = |touched: usize| {
             let without = (0..32).map(|block| if block < touched { 4.0 + 0.1 * f64::from(block as u8) } else { 0.1 });
-            Taken { without: held(without.collect()), with: held(vec![0.1; 32]), rivals: Vec::new() }
+            Taken {
+                without: held(without.collect()),
+                with: held(vec![0.1; 32]),
+                rivals: Vec::new(),
+                is_confirmed: false,
+            }
         };
         assert!(may_be_chance(&taken(1), 25.0) && may_be_chance(&taken(2), 25.0));
         assert!(!may_be_chance(&taken(12), 25.0) && !may_be_chance(&taken(32), 25.0));

@@ -99,7 +99,9 @@ pub(crate) fn let_go(
     for index in (0..found.best.state.guesses.len()).rev() {
         let guess = &found.best.state.guesses[index];
         let id = guess.id();
-        if stands_in(guess) && found.let_go(setting, index) {
+        // What is left beside what other recordings surely show has another reason.
+        let is_confirmed = found.taken.get(index).is_some_and(|taken| taken.is_confirmed);
+        if !is_confirmed && stands_in(guess) && found.let_go(setting, index) {
             found.stand_ins.push(id);
         }
     }

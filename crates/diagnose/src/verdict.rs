@@ -116,7 +116,7 @@ pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
 
 /// Ids of the effects that cannot be told from effect `index`.
 pub fn alternatives(found: &Found, index: usize) -> Vec<&'static str> {
-    let Some(Taken { without, with, rivals }) = found.taken.get(index) else { return Vec::new() };
+    let Some(Taken { without, with, rivals, .. }) = found.taken.get(index) else { return Vec::new() };
     let own = without.log_ratio(with);
     let gained = without.mean_square() - with.mean_square();
     rivals

@@ -9,6 +9,7 @@ use pam_core::effects::{AugmentedModel, Kind, Moment};
 use pam_core::shift::shifted;
 
 use crate::coordinates::Coordinates;
+use crate::error::DiagnoseError;
 use crate::nuisance::Nuisance;
 use crate::question::Question;
 use crate::search::Found;
@@ -18,15 +19,53 @@ use crate::uncertainty::correlated_instants;
 
 /// Share of its size that an effect must be seen with on what was held out: half way between there and not there.
 const SEEN: f64 = 0.5;
-/// The same at most: what is fitted where it hardly shows may come out a little small, but nothing shows a third larger than it is.
-const MOST_SEEN: f64 = 4.0 / 3.0;
+/// The same at most: a factor of two either way, since what is fitted where it hardly shows comes out small.
+const MOST_SEEN: f64 = 2.0;
 /// Standard errors by which it must fall short of that: one in forty by chance.
 const SURELY: f64 = 2.0;
 /// Pieces of the held-out recordings that stand for independent ones.
 const PIECES: usize = 16;
 
-/// `found` on `track` without the effects that `heldout` says are not there.
-pub(crate) fn confirmed(question: &Question<'_>, track: &Track, mut found: Found, heldout: &Track) -> Found {
+/// Searches again without what was denied, at most.
+const MOST_AGAIN: usize = 2;
+
+/// `found` on `track` without the effects that `heldout` says are not there, and the others marked where it surely shows them. Where
+/// the strongest is none, the next best may be the one: it is taken in its place where `heldout` surely shows that.
+///
+/// # Errors
+/// As [`Question::search_without`].
+pub(crate) fn confirmed(
+    question: &Question<'_>,
+    track: &Track,
+    found: Found,
+    heldout: &Track,
+) -> Result<Found, DiagnoseError> {
+    let (mut found, mut strongest) = without_denied(question, track, found, heldout);
+    let mut excluded = Vec::new();
+    while let Some(id) = strongest
+        && found.taken.iter().all(|taken| !taken.is_confirmed)
+        && excluded.len() < MOST_AGAIN
+    {
+        excluded.push(id);
+        let next = question.search_without(track, &excluded)?;
+        let (mut next, its_strongest) = without_denied(question, track, next, heldout);
+        strongest = its_strongest;
+        if next.taken.iter().any(|taken| taken.is_confirmed) {
+            next.first = found.first;
+            next.denied.extend(found.denied);
+            found = next;
+        }
+    }
+    Ok(found)
+}
+
+/// `found` without what was denied, and the id of the one with the strongest evidence if that was.
+fn without_denied(
+    question: &Question<'_>,
+    track: &Track,
+    mut found: Found,
+    heldout: &Track,
+) -> (Found, Option<&'static str>) {
     let nuisance = found.nuisance.clone();
     let setting = question.setting(track, &nuisance);
     let coordinates = Coordinates::of(heldout);
@@ -34,16 +73,28 @@ pub(crate) fn confirmed(question: &Question<'_>, track: &Track, mut found: Found
         .with_reversals(heldout, &coordinates, &found.best.state.model)
         .with_map(heldout, &coordinates);
     let held = question.setting(heldout, &beside);
-    while let Some(Denied { index, too_large, .. }) = denied(&held, &found) {
+    let mut strongest_denied = None;
+    loop {
+        let shares = shares(&held, &found);
+        let Some(Denied { index, too_large, .. }) = denied(&found, &shares) else {
+            for (taken, share) in found.taken.iter_mut().zip(&shares) {
+                taken.is_confirmed = share.is_some_and(|share| share.least() > SEEN);
+            }
+            return (found, strongest_denied);
+        };
         let id = found.best.state.guesses[index].id();
+        let is_strongest = strongest(&found, &shares) == Some(index);
         if !found.let_go(&setting, index) {
-            break;
+            return (found, strongest_denied);
+        }
+        found.denied.push(id);
+        if is_strongest {
+            strongest_denied = strongest_denied.or(Some(id));
         }
         if too_large {
             found.stand_ins.push(id);
         }
     }
-    found
 }
 
 /// An effect that what was held out denies.
@@ -56,21 +107,30 @@ struct Denied {
     too_large: bool,
 }
 
-/// The effect of `found` that what was held out denies most clearly, or does not confirm where another one is stronger: what is
-/// left of the strongest is easily taken for a second one.
-fn denied(held: &Setting<'_>, found: &Found) -> Option<Denied> {
-    let state = &found.best.state;
-    let evidence = |index: usize| found.taken.get(index).map_or(0.0, |taken| taken.without.log_ratio(&taken.with));
-    let strongest = (0..state.guesses.len()).max_by(|left, right| evidence(*left).total_cmp(&evidence(*right)));
+/// The effect of `found` with the strongest evidence among those that are surely there on what was held out, or among all where none
+/// is.
+fn strongest(found: &Found, shares: &[Option<Share>]) -> Option<usize> {
+    let evidence = |index: &usize| found.taken.get(*index).map_or(0.0, |taken| taken.without.log_ratio(&taken.with));
+    let is_there = |index: &usize| shares[*index].is_some_and(|share| share.least() > SEEN);
+    let among = |takes: &dyn Fn(&usize) -> bool| {
+        let every = (0..shares.len()).filter(takes);
+        every.max_by(|left, right| evidence(left).total_cmp(&evidence(right)))
+    };
+    among(&is_there).or_else(|| among(&|_| true))
+}
+
+/// The effect of `found`, there with `shares`, that what was held out denies most clearly, or does not confirm where another one is
+/// stronger: what is left of the strongest is easily taken for a second one.
+fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
+    let strongest = strongest(found, shares);
     let mut least: Option<Denied> = None;
-    for (index, guess) in state.guesses.iter().enumerate() {
+    for (index, (guess, share)) in found.best.state.guesses.iter().zip(shares).enumerate() {
         // An event is none of the others' recordings; in the place of a smooth static effect the static map would do as well.
         if guess.effect.kind() == Kind::Event || guess.effect.is_static() && !guess.effect.is_local() {
             continue;
         }
         // What acts in a part of the range alone may not have been there.
         let stands = strongest == Some(index) || guess.effect.is_static();
-        let share = share(held, state, index);
         // What is permanent may have come to its end before: only the opposite denies it.
         let least_seen = if guess.effect.is_permanent() { 0.0 } else { SEEN };
         let too_large = !guess.effect.outlasts() && share.is_some_and(|share| share.least() > MOST_SEEN);
@@ -87,6 +147,16 @@ fn denied(held: &Setting<'_>, found: &Found) -> Option<Denied> {
         }
     }
     least
+}
+
+/// With how much of its size each effect of `found` is there on `held`; none where nothing can be said.
+fn shares(held: &Setting<'_>, found: &Found) -> Vec<Option<Share>> {
+    let state = &found.best.state;
+    let is_judged = |index: usize| {
+        let effect = state.guesses[index].effect;
+        effect.kind() != Kind::Event && !(effect.is_static() && !effect.is_local())
+    };
+    (0..state.guesses.len()).map(|index| is_judged(index).then(|| share(held, state, index)).flatten()).collect()
 }
 
 /// Share of its size with which an effect is there.

@@ -79,6 +79,8 @@ pub struct Found {
     pub form_square: f64,
     /// Ids of what was taken and let go of again, as more is left than it explains.
     pub stand_ins: Vec<&'static str>,
+    /// Ids of what was taken and let go of again, as recordings that nothing was fitted to do not show it.
+    pub denied: Vec<&'static str>,
 }
 
 impl Found {
@@ -105,6 +107,8 @@ pub struct Taken {
     pub with: HeldOut,
     /// Other effects in its place, best first.
     pub rivals: Vec<Trial>,
+    /// Whether recordings that nothing was fitted to surely show it, with its size.
+    pub is_confirmed: bool,
 }
 
 /// Searches; calls `looked` behind every look at the catalogue. `setting` has no nuisances yet.
@@ -201,7 +205,7 @@ pub fn search(
         let found = without(setting, &best, index, &seen, &promising);
         let Some((without, rivals)) = found else { continue };
         let with = if of_the_map { again(plain, &best)? } else { best.clone() };
-        taken.push(Taken { without: without.held_out, with: with.held_out, rivals });
+        taken.push(Taken { without: without.held_out, with: with.held_out, rivals, is_confirmed: false });
     }
     let (best, nuisance) = kept_map(plain, best, beside.smooth.clone())?;
     let mapped = plain.beside(&nuisance);
@@ -222,6 +226,7 @@ pub fn search(
         nuisance,
         form_square: form_square(limits.sensor_floor_n, seen.force_n.1 - seen.force_n.0, FORM_AT_MOST),
         stand_ins: Vec::new(),
+        denied: Vec::new(),
     })
 }
 
