@@ -18,6 +18,7 @@ use crate::given::Given;
 use crate::isolability::isolability;
 use crate::knocks::{self, Knocks};
 use crate::laws;
+use crate::map_held;
 use crate::named::{candidates, map_entry, named, term_entry};
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::own;
@@ -223,9 +224,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let verdict = verdict(&found, &sizes, knocks.is_some());
     let discovery = discover::discover(&setting, &found, &sizes, verdict, held.as_ref());
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
-    let (state, nuisance) = match &discovery {
-        Some(discovery) => (&discovery.best.state, &discovery.nuisance),
-        None => (&found.best.state, &found.nuisance),
+    let lean = held.as_ref().filter(|_| discovery.is_none());
+    let lean = lean.and_then(|held| map_held::without_it(&question, &track, &found, held));
+    let (state, nuisance) = match (&discovery, &lean) {
+        (Some(discovery), _) => (&discovery.best.state, &discovery.nuisance),
+        (None, Some((state, nuisance))) => (state, nuisance),
+        (None, None) => (&found.best.state, &found.nuisance),
     };
     let whole = question.setting(&track, nuisance);
     let undetermined = || DiagnoseError::Undetermined { path: estimation[0].recording.path.clone() };

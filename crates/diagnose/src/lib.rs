@@ -21,6 +21,7 @@ pub mod isolability;
 pub mod joint;
 pub mod knocks;
 mod laws;
+mod map_held;
 mod named;
 pub mod next_experiment;
 pub mod normal;

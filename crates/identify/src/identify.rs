@@ -15,7 +15,7 @@ use crate::condense::{Condensed, condense};
 use crate::error::IdentifyError;
 use crate::evaluate::{Evaluation, Trace, evaluate, noise_floor_n, trace};
 use crate::fit::{Fit, FitOptions, search};
-use crate::prepare::{Gated, Prepared, direct, gate, redirect, thresholds};
+use crate::prepare::{Gated, Prepared, direct, finest_length_play_m, gate, redirect, thresholds};
 use crate::problem::ForceProblem;
 use crate::search_space::{Free, SearchSpace};
 use crate::standstill;
@@ -208,6 +208,7 @@ impl Checked {
             length_m: self.length_play_m.unwrap_or(from_noise.length_m),
             pressure_pa: self.pressure_play_pa.unwrap_or(from_noise.pressure_pa),
         };
+        let finest_m = self.length_play_m.unwrap_or_else(|| finest_length_play_m(&self.gates, &self.muscle.muscle));
         let largest_n_per_m =
             self.gates.iter().map(|gate| gate.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
         let force_noise_n = self.force_noise_n();
@@ -224,7 +225,7 @@ impl Checked {
         let told_by_validation = told_by_validation && !standstill::is_undecided(&laws);
         let mut thresholds = Thresholds { standstill: laws[0].standstill, ..thresholds };
         if self.form == Form::Corrected {
-            thresholds = standstill::turning(&estimation.iter().collect::<Vec<_>>(), &columns, thresholds)?;
+            thresholds = standstill::turning(&estimation.iter().collect::<Vec<_>>(), &columns, thresholds, finest_m)?;
         }
         redirect(&mut estimation, thresholds, self.form)?;
         redirect(&mut validation, thresholds, self.form)?;

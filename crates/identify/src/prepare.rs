@@ -3,6 +3,7 @@
 use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
 use pam_core::force::{ForceModel, Form};
 use pam_core::muscle::Muscle;
+use pam_core::quality::channel::PLAY;
 use pam_core::quality::{RecordingQuality, SensorEnds};
 use pam_core::recording::Recording;
 use rayon::prelude::*;
@@ -62,6 +63,15 @@ pub fn gate(recordings: Vec<Recording>) -> Result<Vec<Gated>, IdentifyError> {
         .collect()
 }
 
+/// Share of the rest length below which a flip of the direction means nothing.
+const LEAST_PLAY: f64 = 1e-4;
+
+/// Play of the length that the white noise of all of `gates` allows, in m.
+pub fn finest_length_play_m(gates: &[Gated], muscle: &Muscle) -> f64 {
+    let noises = gates.iter().filter_map(|gate| gate.quality.channel("length")).map(|channel| PLAY * channel.noise);
+    noises.fold(LEAST_PLAY * muscle.rest_length_m, f64::max)
+}
+
 /// Thresholds of the direction that fit all of `gates`: five times the worst noise, for the length what it wanders within while
 /// it rests, and never less than 1e-4 of the rest length or 1e-3 of the highest pressure, below which a flip means nothing.
 pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
@@ -80,7 +90,7 @@ pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
     // A recording that moves slowly all the time shows more.
     let rests = gates.iter().filter_map(|gate| gate.quality.channel("length")?.wanders_within()).reduce(f64::min);
     Thresholds {
-        length_m: worst("length").max(rests.unwrap_or(0.0)).max(1e-4 * muscle.rest_length_m),
+        length_m: worst("length").max(rests.unwrap_or(0.0)).max(LEAST_PLAY * muscle.rest_length_m),
         pressure_pa: worst("pressure").max(1e-3 * highest_pa),
         held_m: 0.0,
         turn_m: 0.0,

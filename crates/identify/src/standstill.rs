@@ -26,6 +26,9 @@ const HELD_M: [f64; 6] = [0.0, 1e-5, 1.5e-5, 2e-5, 3e-5, 4.5e-5];
 /// See [`HELD_M`].
 const TURNS_M: [f64; 4] = [0.0, 2e-5, 5e-5, 1e-4];
 
+/// Share of the play below which a finer one is another hypothesis.
+const FINER: f64 = 0.5;
+
 /// Rows that the laws are compared on, at most.
 const MOST_ROWS: usize = 60_000;
 /// Rows that travels are compared on, at most, the first of every recording: they show around reversals, at the full rate.
@@ -78,7 +81,9 @@ pub fn is_undecided(laws: &[StandstillFit]) -> bool {
 }
 
 /// `thresholds` with the travels in which friction turns over after a reversal: those of [`HELD_M`] and [`TURNS_M`] that leave
-/// least of the force; none where nothing is clearly gained.
+/// least of the force; none where nothing is clearly gained. What shakes a length at rest may be its sensor, or a tremor of the
+/// muscle that turns friction over with every swing: where white noise alone asks for a much finer play, `finest_m`, the force
+/// says which.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
@@ -86,11 +91,14 @@ pub fn turning(
     recordings: &[&Prepared],
     columns: &ForceColumns,
     thresholds: Thresholds,
+    finest_m: f64,
 ) -> Result<Thresholds, IdentifyError> {
     let first = TURNING_ROWS / recordings.len().max(1);
-    let travels: Vec<Thresholds> = HELD_M
-        .into_iter()
-        .flat_map(|held_m| TURNS_M.map(|turn_m| Thresholds { held_m, turn_m, ..thresholds }))
+    let finest = (finest_m < FINER * thresholds.length_m).then_some(finest_m);
+    let travels: Vec<Thresholds> = std::iter::once(thresholds.length_m)
+        .chain(finest)
+        .flat_map(|length_m| HELD_M.map(|held_m| Thresholds { length_m, held_m, ..thresholds }))
+        .flat_map(|thresholds| TURNS_M.map(|turn_m| Thresholds { turn_m, ..thresholds }))
         .collect();
     let judged: Result<Vec<(f64, Thresholds)>, IdentifyError> = travels
         .into_par_iter()

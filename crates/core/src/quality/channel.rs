@@ -47,7 +47,7 @@ impl ChannelQuality {
 
     /// Five times the noise, colored or not: by how much a channel must turn back before it counts as turned.
     pub fn play_threshold(&self) -> f64 {
-        5.0 * self.any_noise()
+        PLAY * self.any_noise()
     }
 
     /// What averages of the channel at rest wander within, from peak to peak; none where it never rests.
@@ -55,6 +55,9 @@ impl ChannelQuality {
         (self.rest_noise > 0.0).then_some(PEAK_TO_PEAK * self.rest_noise)
     }
 }
+
+/// Standard deviations of its noise by which a channel must turn back before it counts as turned.
+pub const PLAY: f64 = 5.0;
 
 /// Length of a run of equal values that counts as stuck.
 const STUCK_RUN: usize = 10;
