@@ -110,6 +110,10 @@ impl Diagnosis {
     /// # Errors
     /// [`DiagnoseError::Recording`] where samples cannot be read back.
     pub fn weigh(&mut self, agreement: &Agreement) -> Result<(), DiagnoseError> {
+        if self.is_followed(agreement) {
+            self.verdict = Verdict::Consistent;
+            (self.regions, self.unexplained) = (Vec::new(), Vec::new());
+        }
         let numbers = self.numbers(agreement);
         self.unexplained_share = numbers.share_left();
         self.statement = words::statement(self.verdict, &self.effects, &numbers, &self.regions, &self.unexplained)
@@ -136,6 +140,16 @@ impl Diagnosis {
         Ok(())
     }
 
+    /// Whether recordings that nothing was fitted to are followed so well, over all samples, that what is left of the fitted ones
+    /// without a name, and without a term that models it, does not matter.
+    fn is_followed(&self, agreement: &Agreement) -> bool {
+        let held = agreement.base_holdout.together.as_ref();
+        self.verdict == Verdict::Unexplained
+            && self.effects.is_empty()
+            && self.empirical.is_none()
+            && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)
+    }
+
     /// What the verdict says in numbers.
     fn numbers(&self, agreement: &Agreement) -> words::Numbers {
         words::Numbers {
@@ -144,6 +158,7 @@ impl Diagnosis {
             floor_n: agreement.noise_floor_n,
             matters_n: self.sizes.matters_n,
             static_n: self.sizes.static_n,
+            held_n: agreement.base_holdout.together.as_ref().map(|held| held.rmse_all_n),
             with_map: self.entries.iter().any(|entry| entry.id == MAP_ID),
         }
     }
@@ -394,6 +409,9 @@ impl Diagnosis {
     }
 }
 
+/// Times the sensors' noise that may be left of what was held out, over all samples, where nothing was named: as much again as the
+/// noise itself.
+const FOLLOWED_WITHIN: f64 = 2.0;
 /// Times the sensors' noise that may be left of what is called explained.
 const EXPLAINED_WITHIN: f64 = 1.5;
 

@@ -50,7 +50,7 @@ impl Sizes {
         let excess = |square: f64, below: f64| (square - below).max(0.0).sqrt();
         let best = found.best.held_out.mean_square();
         let left_n = found.left.as_ref().map_or(0.0, |left| excess(best, left.held_out.mean_square()));
-        let base = found.whole.held_out.mean_square();
+        let base = found.before().mean_square();
         Self {
             structured_share: (excess(base, found.floor_square).powi(2) / base.max(f64::MIN_POSITIVE)).min(1.0),
             floor_square: found.floor_square,

@@ -20,6 +20,8 @@ pub(crate) struct Numbers {
     pub(crate) matters_n: f64,
     /// What a smooth static map takes of the mismatch, where eq. 11 accounts for less in any muscle.
     pub(crate) static_n: Option<f64>,
+    /// What the base model leaves of held-out recordings, over all samples.
+    pub(crate) held_n: Option<f64>,
     /// Whether a smooth static map stands beside the effects.
     pub(crate) with_map: bool,
 }
@@ -65,11 +67,19 @@ pub(crate) fn statement(
 ) -> String {
     let names: Vec<&str> = effects.iter().map(|effect| effect.name.as_str()).collect();
     match verdict {
-        Verdict::Consistent => format!(
-            "Nothing is missing that matters: refitted, the model leaves an RMSE of {:.2} N, where noise leaves {:.2} N, and \
-             {:.2} N beyond that would matter.",
-            numbers.before_n, numbers.floor_n, numbers.matters_n
-        ),
+        Verdict::Consistent => {
+            let matters_n = numbers.matters_n;
+            let held = match numbers.held_n {
+                Some(held_n) if numbers.before_n > numbers.floor_n.hypot(matters_n) => {
+                    format!("{held_n:.2} N of held-out recordings")
+                }
+                _ => format!("{matters_n:.2} N beyond that would matter"),
+            };
+            format!(
+                "Nothing is missing that matters: refitted, the model leaves an RMSE of {:.2} N, where noise leaves {:.2} N, and {held}.",
+                numbers.before_n, numbers.floor_n
+            )
+        }
         Verdict::Explained | Verdict::ExplainedInPart => format!(
             "Missing physics: {}; {}. The mismatch lies {}.",
             list(&names),
@@ -178,8 +188,15 @@ mod tests {
 
     #[test]
     fn an_error_that_rises_is_not_said_to_fall() {
-        let numbers =
-            |after_n| Numbers { before_n: 2.0, after_n, floor_n: 1.0, matters_n: 1.0, static_n: None, with_map: false };
+        let numbers = |after_n| Numbers {
+            before_n: 2.0,
+            after_n,
+            floor_n: 1.0,
+            matters_n: 1.0,
+            static_n: None,
+            held_n: None,
+            with_map: false,
+        };
         assert!(numbers(1.5).gain(&[]).starts_with("with that the RMSE falls from 2.00 to 1.50 N, 58 % of the excess"));
         assert_eq!(numbers(2.5).gain(&[]), "with that the RMSE rises from 2.00 to 2.50 N");
     }

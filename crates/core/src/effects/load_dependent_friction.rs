@@ -18,6 +18,10 @@ impl Effect for LoadDependentFriction {
         &PAGE
     }
 
+    fn is_friction(&self) -> bool {
+        true
+    }
+
     fn role(&self) -> Role {
         Role::Pulls
     }

@@ -12,6 +12,7 @@ use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::{Effect, Seen};
 
 use crate::coordinates::Coordinates;
+use crate::hypothesis::Guess;
 use crate::joint::HeldOut;
 use crate::nuisance::Nuisance;
 use crate::stand_ins;
@@ -79,11 +80,20 @@ pub struct Found {
     pub form_square: f64,
     /// Ids of what was taken and let go of again, as more is left than it explains.
     pub stand_ins: Vec<&'static str>,
+    /// Ids of static effects that stand for the static map.
+    pub of_the_map: Vec<&'static str>,
     /// Ids of what was taken and let go of again, as recordings that nothing was fitted to do not show it.
     pub denied: Vec<&'static str>,
 }
 
 impl Found {
+    /// What was left before anything was named: beside a static map, or without it where an effect was named in its place.
+    pub(crate) fn before(&self) -> &HeldOut {
+        let stands = |guess: &Guess| self.of_the_map.contains(&guess.id());
+        let judged = if self.best.state.guesses.iter().any(stands) { &self.base } else { &self.whole };
+        &judged.held_out
+    }
+
     /// Lets go of effect `index`; `setting` has the nuisances that were in. False where the rest determines no fit.
     pub(crate) fn let_go(&mut self, setting: &Setting<'_>, index: usize) -> bool {
         let rest = setting.fit_without(&self.best.state, index).and_then(|state| judged(setting, state));
@@ -226,6 +236,7 @@ pub fn search(
         nuisance,
         form_square: form_square(limits.sensor_floor_n, seen.force_n.1 - seen.force_n.0, FORM_AT_MOST),
         stand_ins: Vec::new(),
+        of_the_map: parsimonious,
         denied: Vec::new(),
     })
 }
@@ -244,7 +255,6 @@ pub(crate) fn again(setting: &Setting<'_>, best: &Judged) -> Option<Judged> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hypothesis::Guess;
 
     use pam_core::effects::effect;
 
