@@ -225,7 +225,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let discovery = discover::discover(&setting, &found, &sizes, verdict, held.as_ref());
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
     let lean = held.as_ref().filter(|_| discovery.is_none());
-    let lean = lean.and_then(|held| map_held::without_it(&question, &track, &found, held));
+    let lean = lean.and_then(|held| map_held::without_it(&setting, &found, held));
     let (state, nuisance) = match (&discovery, &lean) {
         (Some(discovery), _) => (&discovery.best.state, &discovery.nuisance),
         (None, Some((state, nuisance))) => (state, nuisance),
