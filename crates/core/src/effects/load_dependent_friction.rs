@@ -18,10 +18,6 @@ impl Effect for LoadDependentFriction {
         &PAGE
     }
 
-    fn is_friction(&self) -> bool {
-        true
-    }
-
     fn role(&self) -> Role {
         Role::Pulls
     }

@@ -182,11 +182,6 @@ pub trait Effect: Sync {
         false
     }
 
-    /// Whether its force changes sign with the direction of motion, as friction does.
-    fn is_friction(&self) -> bool {
-        false
-    }
-
     /// Whether all its amplitudes have the same sign, whichever it is.
     fn has_one_sign(&self) -> bool {
         false

@@ -23,12 +23,12 @@ const FORM: f64 = 25.0;
 /// The same as a share of the range of the force, root mean square. Of 70 healthy muscles that this was chosen by, in one half of
 /// which eq. 11 holds nowhere, four in five were within it; static effects at their published sizes begin at 0.5 %.
 const FORM_SHARE: f64 = 0.0045;
-/// How much more, in mean squares, an effect must take up that is the same in both directions: eq. 11 misses muscles there, and hardly
-/// in what its friction does. Of four such effects that slices called up wrongly, the largest had 1.15 times the limit; of the right
-/// ones the smallest had 2.5.
-const EVEN: f64 = 2.0;
 /// The same that no healthy muscle comes near: the least regular of those 70 had 1.21 %.
 pub(super) const FORM_AT_MOST: f64 = 0.0135;
+/// How much more, in mean squares, the map must take up for an effect that acts through eq. 11, or makes it strain: what eq. 11 misses
+/// of a muscle looks like another stiffness of its own. Of ten such effects that slices called up wrongly, the largest had 1.9 times the
+/// limit; of four right ones the smallest had 2.5.
+const LIKE_THE_BASE: f64 = 2.0;
 
 /// What a static map takes up in muscles, in N², where the sensors leave `sensors_n` and the force ranges over `range_n`;
 /// `share` of it.
@@ -125,23 +125,31 @@ impl Look<'_> {
         let full_floor = floor_square + self.limits.sensor_floor_n.powi(2);
         let matters = self.limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
         let (low_n, high_n) = self.seen.force_n;
-        let form = form_square(self.limits.sensor_floor_n, high_n - low_n, FORM_SHARE);
-        if map < matters.max(form) {
+        let least = matters.max(form_square(self.limits.sensor_floor_n, high_n - low_n, FORM_SHARE));
+        if map < least {
             return None;
         }
         let statics = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static();
         let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &statics);
         let stands = |trial: &&Trial| {
             let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
-            let least = if trial.guess.effect.is_friction() { form } else { EVEN * form };
-            gained > OF_THE_MAP * map && map > least && trial.log_ratio > LEAST_LOG_RATIO
+            gained > OF_THE_MAP * map && trial.log_ratio > LEAST_LOG_RATIO
         };
-        let named: Vec<Judged> =
-            trials.iter().filter(stands).filter_map(|trial| settle(&beside, &bare, trial)).collect();
-        // Where eq. 11 must strain for all of them, as where the muscle file is wrong, the best stands all the same.
-        let at_ease = named.iter().find(|named| !is_strained(&beside, named, base));
-        again(self.mapped, at_ease.or(named.first())?)
+        let named: Vec<(bool, Judged)> = trials
+            .iter()
+            .filter(stands)
+            .filter_map(|trial| settle(&beside, &bare, trial))
+            .map(|named| (is_strained(&beside, &named, base), named))
+            .filter(|(strained, named)| map > least * if *strained || sees(named) { LIKE_THE_BASE } else { 1.0 })
+            .collect();
+        let at_ease = named.iter().find(|(strained, _)| !strained).or(named.first());
+        again(self.mapped, &at_ease?.1)
     }
+}
+
+/// Whether the last effect of `named` changes what eq. 11 sees.
+fn sees(named: &Judged) -> bool {
+    named.state.guesses.last().is_some_and(|guess| guess.effect.role() == Role::Sees)
 }
 
 /// Whether the last effect of `next`, a static one, strains the base as nothing did before. What changes the reading of a force
