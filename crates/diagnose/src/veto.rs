@@ -119,9 +119,12 @@ fn evidence(found: &Found, index: usize) -> f64 {
 }
 
 /// The effect of `found` with the strongest evidence among those that are surely there on what was held out, or among all where none
-/// is.
+/// is. What outlasts a recording is asked for nothing there: its beginnings are unknown.
 fn strongest(found: &Found, shares: &[Option<Share>]) -> Option<usize> {
-    let is_there = |index: &usize| shares[*index].is_some_and(|share| share.least() > SEEN);
+    let is_there = |index: &usize| match shares[*index] {
+        Some(share) => share.least() > SEEN,
+        None => found.best.state.guesses[*index].effect.outlasts(),
+    };
     let among = |takes: &dyn Fn(&usize) -> bool| {
         let every = (0..shares.len()).filter(takes);
         every.max_by(|&left, &right| evidence(found, left).total_cmp(&evidence(found, right)))

@@ -95,7 +95,10 @@ pub(crate) fn discover(
     }
     let left = |step: &Step| held.map(|held| Left::of(&step.model(found, setting.track), held));
     let start = Step { best: found.best.clone(), nuisance: found.nuisance.clone(), terms: Vec::new() };
-    let before = left(&start);
+    // A static map that carries held-out recordings away makes no gain of a term that brings them back.
+    let bare = held.map(|held| Left::of(&AugmentedModel::new(found.base.state.model.clone(), Vec::new()), held));
+    let before =
+        left(&start).into_iter().chain(bare).min_by(|one, other| one.together_n().total_cmp(&other.together_n()));
     let (plain, mapped) = nuisances(setting, found)?;
     let mut smooth = Step { best: again(&setting.beside(&mapped), &found.best)?, nuisance: mapped.clone(), ..start };
     let mut kept: Option<Step> = None;
