@@ -194,6 +194,56 @@ fn condensed(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pam_core::recording::{Recording, Repairs, Samples};
+
+    use crate::prepare::{direct, gate};
+    use crate::testing::{THRESHOLDS, model};
+
+    /// A muscle that goes one way, rests for 6 s and goes back, at 500 Hz. While it rests its length shakes by 40 µm at 8 Hz, by what
+    /// the sensor does alone or by what the muscle does, and friction with it.
+    fn shaking(shakes_the_muscle: bool) -> Prepared {
+        let time_s: Vec<f64> = (0..5000).map(|row| 0.002 * f64::from(row)).collect();
+        let path_m = |t: f64| 0.25 - 0.01 * t.min(2.0) + 0.01 * (t - 8.0).max(0.0);
+        let shake_m = |t: f64| 40e-6 * (2.0 * std::f64::consts::PI * 8.0 * t).sin();
+        let rests = |t: f64| (2.0..8.0).contains(&t);
+        let length_m: Vec<f64> = time_s.iter().map(|&t| path_m(t) + if rests(t) { shake_m(t) } else { 0.0 }).collect();
+        let model = model();
+        let force_n: Vec<f64> = time_s
+            .iter()
+            .map(|&t| {
+                let swing = (2.0 * std::f64::consts::PI * 8.0 * t).cos();
+                let (shake, way) = match (rests(t), shakes_the_muscle) {
+                    (true, true) => (shake_m(t), if swing < 0.0 { 1.0 } else { -1.0 }),
+                    (true, false) => (0.0, 1.0),
+                    (false, _) => (0.0, if t < 2.0 { 1.0 } else { -1.0 }),
+                };
+                model.force_n(3e5, path_m(t) + shake, way)
+            })
+            .collect();
+        let samples = Samples::from_columns(&time_s, &[3e5; 5000], &length_m, &force_n);
+        let recording = Recording {
+            path: "shaking.csv".to_owned(),
+            sha256: String::new(),
+            samples,
+            segments: std::iter::once(0..5000).collect(),
+            repairs: Repairs::default(),
+            ignored_columns: Vec::new(),
+        };
+        direct(gate(vec![recording]).expect("a recording"), COARSE, Form::Corrected).expect("directions").remove(0)
+    }
+
+    const COARSE: Thresholds = Thresholds { length_m: 2e-4, standstill: Standstill::Held, ..THRESHOLDS };
+
+    #[test]
+    fn a_tremor_of_the_muscle_asks_for_a_finer_play_and_that_of_a_sensor_does_not() {
+        let muscle = pam_core::muscle::Muscle::nominal();
+        let columns = ForceColumns::new(&muscle, 3e9, Form::Corrected, 3e5 * 0.25);
+        let play_m = |shakes_the_muscle: bool| {
+            turning(&[&shaking(shakes_the_muscle)], &columns, COARSE, 2e-5).expect("travels").length_m
+        };
+        assert_eq!(play_m(true), 2e-5);
+        assert_eq!(play_m(false), COARSE.length_m);
+    }
 
     #[test]
     fn laws_that_leave_the_same_are_undecided_and_one_law_alone_is_not() {
