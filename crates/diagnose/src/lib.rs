@@ -48,4 +48,5 @@ pub mod trial;
 pub mod uncertainty;
 pub mod verdict;
 mod veto;
+mod weigh;
 pub mod words;
