@@ -144,7 +144,6 @@ impl Direction {
         for segment in &recording.segments {
             let segment = segment.start.min(n_rows)..segment.end.min(n_rows);
             let mut carried = Bounds::UNKNOWN;
-            let first = all.states.len();
             for start in segment.clone().step_by(STRETCH_ROWS) {
                 let end = (start + STRETCH_ROWS).min(segment.end);
                 let (time_s, pressure_pa, length_m) = rows(recording, &(start..end))?;
@@ -156,11 +155,11 @@ impl Direction {
                     all.known.push(bounds.is_known());
                 }
             }
-            // Friction that nothing ever moves is none that could be told from a constant force.
-            if !all.known[first..].contains(&true) {
-                all.known[first..].fill(true);
-                all.settled[first..].fill(true);
-            }
+        }
+        // What nothing moves from beginning to end counts without friction, or nothing would.
+        if !all.known.contains(&true) {
+            all.known.fill(true);
+            all.settled.fill(true);
         }
         Ok(all)
     }
@@ -295,10 +294,26 @@ mod tests {
     use super::*;
     use crate::recording::{Repairs, Samples};
 
+    const HELD: Thresholds =
+        Thresholds { length_m: 1e-4, pressure_pa: 1e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::Held };
+
+    /// Lengths at 100 Hz and constant pressure, with a gap of 5 s before row `gap`.
+    fn recording(length_m: &[f64], gap: usize) -> Recording {
+        let n = length_m.len();
+        let time_s: Vec<f64> = (0..n).map(|row| 0.01 * row as f64 + if row < gap { 0.0 } else { 5.0 }).collect();
+        Recording {
+            path: "gap.csv".to_owned(),
+            sha256: String::new(),
+            samples: Samples::from_columns(&time_s, &vec![2e5; n], length_m, &vec![100.0; n]),
+            segments: vec![0..gap, gap..n],
+            repairs: Repairs::default(),
+            ignored_columns: Vec::new(),
+        }
+    }
+
     #[test]
     fn after_a_gap_nothing_is_known_until_something_moves() {
         // Contracting for 2 s, a gap, at rest for 2 s, extending for 2 s.
-        let time_s: Vec<f64> = (0..600).map(|row| 0.01 * f64::from(row) + if row < 200 { 0.0 } else { 5.0 }).collect();
         let length_m: Vec<f64> = (0..600)
             .map(|row| match row {
                 0..200 => 0.26 - 5e-5 * f64::from(row),
@@ -306,20 +321,20 @@ mod tests {
                 _ => 0.24 + 5e-5 * f64::from(row - 400),
             })
             .collect();
-        let samples = Samples::from_columns(&time_s, &[2e5; 600], &length_m, &[100.0; 600]);
-        let recording = Recording {
-            path: "gap.csv".to_owned(),
-            sha256: String::new(),
-            samples,
-            segments: vec![0..200, 200..600],
-            repairs: Repairs::default(),
-            ignored_columns: Vec::new(),
-        };
-        let thresholds =
-            Thresholds { length_m: 1e-4, pressure_pa: 1e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::Held };
-        let direction = Direction::of(&recording, thresholds, Driver::Motion).expect("directions");
+        let direction = Direction::of(&recording(&length_m, 200), HELD, Driver::Motion).expect("directions");
         assert!(direction.is_known(150) && direction.is_settled(150) && direction.sign(150) > 0.0);
         assert!((210..380).all(|row| !direction.is_known(row) && !direction.is_settled(row)));
         assert!(direction.is_settled(550) && direction.sign(550) < 0.0);
+    }
+
+    #[test]
+    fn a_segment_that_never_moves_is_unknown_beside_one_that_does_and_counts_where_none_does() {
+        let known = |travel_m: f64| {
+            let length_m: Vec<f64> = (0..400).map(|row| 0.26 - travel_m * f64::from(row.min(200)) / 200.0).collect();
+            let direction = Direction::of(&recording(&length_m, 200), HELD, Driver::Motion).expect("directions");
+            [direction.is_known(190) && direction.is_settled(190), direction.is_known(300) && direction.is_settled(300)]
+        };
+        assert_eq!(known(0.01), [true, false]);
+        assert_eq!(known(0.0), [true, true]);
     }
 }
