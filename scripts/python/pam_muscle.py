@@ -903,10 +903,10 @@ def directions_of(recording, muscle):
     """State of friction at every row, in [-1, 1]: +1 after contracting, -1 after extending, 0 where it is not known."""
     thresholds = muscle.model["direction"]
     standstill = thresholds.get("standstill", {"slides": {"over_pa": 0.0}})
-    over_pa = None if standstill == "held" else standstill["slides"]["over_pa"]
+    slides = {"over_pa": None} if standstill == "held" else standstill["slides"]
     travels_m = thresholds.get("held_m", 0.0), thresholds.get("turn_m", 0.0)
-    law = Law(thresholds["length_m"], thresholds["pressure_pa"], *travels_m, over_pa)
-    found = np.zeros(len(recording.time_s))
+    law = Law(thresholds["length_m"], thresholds["pressure_pa"], *travels_m, slides["over_pa"], slides.get("share", 1.0))
+    found, unknown = np.zeros(len(recording.time_s)), []
     for segment in recording.segments():
         carried, known = UNKNOWN, []
         for start in range(segment.start, segment.stop, STRETCH_ROWS):
@@ -916,23 +916,26 @@ def directions_of(recording, muscle):
             carried = bounds[-1] if bounds else carried
             found[rows] = [hundredths(0.5 * (low + high)) for low, high in bounds]
             known += [is_known(bound) for bound in bounds]
-        # Where nothing ever moves, nothing is unknown: friction is zero there.
-        unknown = known.index(True) if True in known else 0
-        if unknown and recording.force_n is not None:
-            rows = slice(segment.start, segment.start + unknown)
+        first = known.index(True) if True in known else len(known)
+        unknown.append(slice(segment.start, segment.start + first))
+    # Where nothing moves from beginning to end, nothing is unknown: friction is zero there.
+    moves = sum(rows.stop - rows.start for rows in unknown) < len(found)
+    for rows in unknown if moves and recording.force_n is not None else []:
+        if rows.start < rows.stop:
             found[rows] = beginning(recording, rows, law, muscle.eq11, found[rows])
     return found
 
 
 @dataclasses.dataclass
 class Law:
-    """How the direction is found, in SI; `over_pa` is None where friction is held at standstill."""
+    """How the direction is found, in SI; `over_pa` is None where friction is held at standstill, `share` what of it slides."""
 
     length_m: float
     pressure_pa: float
     held_m: float
     turn_m: float
     over_pa: float
+    share: float
 
 
 def hundredths(state):
@@ -960,7 +963,7 @@ def beginning(recording, rows, law, eq11, found):
         state = index / 20
         middles = np.full(len(pressure_pa), state)
         if law.over_pa is not None and law.over_pa > 0.0:
-            middles = np.array([0.5 * (low + high) for low, high in slide_bounds(smooth_pa, law.over_pa, (state, state))])
+            middles = np.array([0.5 * (low + high) for low, high in slide_bounds(smooth_pa, law, (state, state))])
         left = np.cumsum((without_n - middles * with_n) ** 2)[-1]
         if left < least:
             best, least = [hundredths(middle) for middle in middles], left
@@ -986,7 +989,7 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     noise_m = NOISE * law.length_m / math.sqrt(2 * half + 1)
     pushed = [pushed_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
     pushed = [rows for rows in pushed if rows is not None]
-    slides = law.over_pa is not None and law.over_pa > 2.0 * law.pressure_pa
+    slides = law.over_pa is not None and (law.over_pa > 2.0 * law.pressure_pa or law.share < 1.0)
     if law.over_pa is not None and not slides:
         for still in pushed:
             before = marks[still.start - 1] if still.start > 0 else sign_of(carried)
@@ -999,7 +1002,7 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     if slides:
         for still in pushed:
             before = bounds[still.start - 1] if still.start > 0 else carried
-            bounds[still.start : still.stop] = slide_bounds(pressure[still.start : still.stop], law.over_pa, before)
+            bounds[still.start : still.stop] = slide_bounds(pressure[still.start : still.stop], law, before)
             unmoved = still.stop
             while unmoved < n and marks[unmoved] == 0:
                 bounds[unmoved] = bounds[still.stop - 1]
@@ -1029,12 +1032,16 @@ def carry_on(marks, start, before, most):
         turn += 1
 
 
-def slide_bounds(pressure, over_pa, before):
-    """Friction that follows the pressure: a stop that gives way from one sign to the other over `over_pa`."""
+def slide_bounds(pressure, law, before):
+    """Friction that follows the pressure: a stop that gives way from one sign to the other over `law.over_pa`, or up to a share."""
+
+    def slid(state, by):
+        return max(state, min(state + by, law.share)) if by > 0.0 else min(state, max(state + by, -law.share))
+
     (low, high), last_pa, bounds = before, float(pressure[0]), []
     for pressure_pa in pressure.tolist():
-        by = 2.0 * (pressure_pa - last_pa) / over_pa
-        low, high, last_pa = min(max(low + by, -1.0), 1.0), min(max(high + by, -1.0), 1.0), pressure_pa
+        by = 2.0 * (pressure_pa - last_pa) / law.over_pa
+        low, high, last_pa = slid(low, by), slid(high, by), pressure_pa
         bounds.append((low, high))
     return bounds
 

@@ -92,7 +92,8 @@ pub(crate) struct Args {
     pub(crate) friction: Option<FrictionArg>,
 
     /// What friction does while the length stands still: held, follows (the pressure, at once), or the kPa of pressure
-    /// over which it turns over; by default what fits the recordings best.
+    /// over which it turns over, with the share of it that does where that is not all (40:0.6); by default what fits the
+    /// recordings best.
     #[arg(long, value_name = "LAW", value_parser = standstill)]
     pub(crate) standstill: Option<Standstill>,
 
@@ -237,17 +238,21 @@ impl FrictionArg {
     }
 }
 
-/// `held`, `follows` or a pressure in kPa.
+/// `held`, `follows`, or a pressure in kPa and, after a colon, a share.
 fn standstill(text: &str) -> Result<Standstill, String> {
     match text {
-        "held" => Ok(Standstill::Held),
-        "follows" => Ok(Standstill::AT_ONCE),
-        _ => match text.parse::<f64>() {
-            Ok(over_kpa) if over_kpa > 0.0 && over_kpa.is_finite() => {
-                Ok(Standstill::Slides { over_pa: over_kpa * 1e3 })
-            }
-            _ => Err("expected held, follows, or a pressure in kPa".to_owned()),
-        },
+        "held" => return Ok(Standstill::Held),
+        "follows" => return Ok(Standstill::AT_ONCE),
+        _ => {}
+    }
+    let (over_kpa, share) = text.split_once(':').unwrap_or((text, "1"));
+    match (over_kpa.parse::<f64>(), share.parse::<f64>()) {
+        (Ok(over_kpa), Ok(share)) if over_kpa > 0.0 && over_kpa.is_finite() && share > 0.0 && share <= 1.0 => {
+            Ok(Standstill::Slides { over_pa: over_kpa * 1e3, share })
+        }
+        _ => {
+            Err("expected held, follows, or a pressure in kPa, with a share up to 1 after a colon (40:0.6)".to_owned())
+        }
     }
 }
 

@@ -5,10 +5,11 @@ use pam_core::artifact::diagnosis::{
     Candidate, DiagnoseConfig, Empirical, Implausible, Isolability, NamedEffect, NextExperiment, Region, Verdict,
 };
 use pam_core::artifact::model::EffectEntry;
+use pam_core::direction::Thresholds;
 use pam_core::effects::{AugmentedModel, Effect};
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
-use pam_identification::evaluate::{evaluate, noise_floor_n};
+use pam_identification::evaluate::{evaluate, evaluate_augmented, noise_floor_n};
 use pam_identification::prepare::{Prepared, redirect};
 
 use crate::check;
@@ -181,15 +182,16 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     for _ in 0..MOST_LAWS {
         let question = Question::new(&estimation, &model, limits.clone());
         let Some(standstill) = laws::better(&question, &answer.track, &answer.found, model.direction)? else { break };
-        let before = model.direction.standstill;
+        let before = (model.direction, held_n(&holdout, &answer, model.direction)?);
         model.direction.standstill = standstill;
         redirect(&mut estimation, model.direction, model.form)?;
         redirect(&mut holdout, model.direction, model.form)?;
         track = Track::of(&estimation, model.direction, &model.force_model())?;
         let other = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
         let left = |answer: &Answer| answer.found.best.held_out.mean_square();
-        if left(&other) >= left(&answer) {
-            model.direction.standstill = before;
+        // What judges names judges laws as well.
+        if left(&other) >= left(&answer) || held_n(&holdout, &other, model.direction)? > before.1 {
+            model.direction = before.0;
             redirect(&mut estimation, model.direction, model.form)?;
             redirect(&mut holdout, model.direction, model.form)?;
             break;
@@ -301,6 +303,13 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         config,
     };
     Ok(diagnosis)
+}
+
+/// What `answer` leaves of `holdout`, root mean square over all samples, in N; nothing where nothing was held out.
+fn held_n(holdout: &[Prepared], answer: &Answer, direction: Thresholds) -> Result<f64, DiagnoseError> {
+    let state = &answer.found.best.state;
+    let augmented = AugmentedModel::new(state.model.clone(), state.terms()).without_events();
+    Ok(evaluate_augmented(holdout, &augmented, direction)?.together.map_or(0.0, |together| together.rmse_all_n))
 }
 
 /// The base model that leaves less on the recordings at their full rate: as it was identified, if that was on these, or as

@@ -20,9 +20,9 @@ use crate::track::Track;
 const LAWS: [Standstill; 5] = [
     Standstill::Held,
     Standstill::AT_ONCE,
-    Standstill::Slides { over_pa: 2e4 },
-    Standstill::Slides { over_pa: 5e4 },
-    Standstill::Slides { over_pa: 1.2e5 },
+    Standstill::Slides { over_pa: 2e4, share: 1.0 },
+    Standstill::Slides { over_pa: 5e4, share: 1.0 },
+    Standstill::Slides { over_pa: 1.2e5, share: 1.0 },
 ];
 
 /// Share of the mean square that another law must leave at most to be taken.

@@ -203,6 +203,17 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
         ));
         logs.push((log.to_owned(), format!("{log}.csv")));
     }
+    // Friction that slides partly while the length rests, and a rest after a gap, of which nothing is known but its force.
+    let partly =
+        desk.read("presliding_hysteresis.json").replace("\"over_pa\": 40000.0", "\"over_pa\": 40000.0, \"share\": 0.6");
+    desk.write("rest.csv", &with_a_rest_after_a_gap(&desk.read("minor-loops.csv")));
+    for (name, log) in [("partly", "isometric-ramps"), ("partly-rest", "rest")] {
+        desk.write(&format!("{name}.json"), &partly);
+        desk.exported(&format!(
+            "{log}.csv --model {name}.json --vectors {name}.vectors.csv --accept-implausible --quiet"
+        ));
+        logs.push((name.to_owned(), format!("{log}.csv")));
+    }
     let lines: Vec<String> = logs.iter().map(|(name, log)| format!("{name} {log}")).collect();
     desk.write("cases.txt", &lines.join("\n"));
     let said = run_python(&desk, &python, include_str!("agreement.py"));
@@ -252,6 +263,15 @@ print((beyond == outside).all(), outside.sum())
     assert!(settled_n <= TOLERANCE_N && pressure <= 1e-9, "{said}");
     assert_eq!(words[2], "True", "{said}");
     assert!(words[3].parse::<f64>().unwrap() > 0.0, "points outside are among them: {said}");
+}
+
+/// A recording, and 20 s after its end 500 rows that are like its last one.
+fn with_a_rest_after_a_gap(text: &str) -> String {
+    let (_, last) = text.trim_end().rsplit_once('\n').unwrap();
+    let (time_s, rest) = last.split_once(',').unwrap();
+    let from_s = time_s.parse::<f64>().unwrap() + 20.0;
+    let rows = (0..500).map(|row| format!("{:.4},{rest}\n", from_s + 0.005 * f64::from(row)));
+    text.to_owned() + &rows.collect::<String>()
 }
 
 /// What a script prints, run beside the module.

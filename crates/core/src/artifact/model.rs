@@ -13,7 +13,7 @@ pub use super::identify_config::{
     Assumed, BladderLaw, FixedParameter, FrictionLaw, IdentifyConfig, Loss, StandstillFit,
 };
 use super::{ArtifactError, Input, InputRole, Tool};
-use crate::direction::Thresholds;
+use crate::direction::{Standstill, Thresholds};
 use crate::effects::{AugmentedModel, Kind};
 use crate::force::{BaseParameters, ForceModel, Form, Parameter};
 use crate::muscle::{Dimension, Muscle};
@@ -198,6 +198,15 @@ impl ModelArtifact {
                 number(pressure_pa)
             ));
         }
+        if let Standstill::Slides { over_pa, share } = self.direction.standstill
+            && (over_pa < 0.0 || !(share > 0.0 && share <= 1.0) || over_pa == 0.0 && share < 1.0)
+        {
+            return Err(format!(
+                "friction at standstill that slides over {} Pa, {} of it: a share is above 0 and up to 1, and less than 1 only over a pressure",
+                number(over_pa),
+                number(share)
+            ));
+        }
         for (index, entry) in self.effects.iter().enumerate() {
             let term = entry.term()?;
             // Events may come again, and so may terms without a name; what belongs to muscle or bench is there or not.
@@ -253,7 +262,6 @@ impl ModelArtifact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::direction::Standstill;
     use crate::muscle::tests::nominal;
 
     fn parameter(name: &str, value: f64, unit: &str) -> ParameterEntry {
@@ -439,6 +447,22 @@ mod tests {
         turned.check().expect("no threshold is one");
         turned.direction.length_m = -1.0;
         assert_eq!(turned.check(), Err("a threshold of the direction is negative: -1 m, 0 Pa".to_owned()));
+    }
+
+    #[test]
+    fn friction_that_slides_by_more_than_all_of_it_or_partly_at_once_is_refused() {
+        for (over_pa, share, is_right) in [
+            (0.0, 1.0, true),
+            (4e4, 0.6, true),
+            (0.0, 0.6, false),
+            (4e4, 0.0, false),
+            (4e4, 1.2, false),
+            (-1.0, 1.0, false),
+        ] {
+            let mut slid = artifact(vec![]);
+            slid.direction.standstill = Standstill::Slides { over_pa, share };
+            assert_eq!(slid.check().is_ok(), is_right, "{over_pa} Pa, {share}");
+        }
     }
 
     #[test]

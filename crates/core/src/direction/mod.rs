@@ -53,23 +53,40 @@ pub enum Standstill {
     Slides {
         /// From one sign to the other, in Pa.
         over_pa: f64,
+        /// Share of the friction that the pressure brings about at most; models that do not say have all of it.
+        #[serde(default = "all", skip_serializing_if = "is_all")]
+        share: f64,
     },
 }
 
 impl Standstill {
     /// Turned over by any change of the pressure that is not noise.
-    pub const AT_ONCE: Self = Self::Slides { over_pa: 0.0 };
+    pub const AT_ONCE: Self = Self::Slides { over_pa: 0.0, share: 1.0 };
 
     /// In words.
     pub fn words(self) -> String {
         match self {
             Self::Held => "friction is held at standstill".to_owned(),
-            Self::Slides { over_pa } if over_pa > 0.0 => {
-                format!("friction at standstill turns over with {:.1} kPa of pressure", over_pa * 1e-3)
+            Self::Slides { over_pa, share } => {
+                let turns = if over_pa > 0.0 {
+                    format!("friction at standstill turns over with {:.1} kPa of pressure", over_pa * 1e-3)
+                } else {
+                    "friction at standstill follows the pressure".to_owned()
+                };
+                if share < 1.0 { format!("{turns}, {:.0} % of it", 100.0 * share) } else { turns }
             }
-            Self::Slides { .. } => "friction at standstill follows the pressure".to_owned(),
         }
     }
+}
+
+fn all() -> f64 {
+    1.0
+}
+
+/// What serde asks for is a reference.
+#[expect(clippy::trivially_copy_pass_by_ref)]
+fn is_all(share: &f64) -> bool {
+    *share >= 1.0
 }
 
 /// How the direction is found.
@@ -219,10 +236,10 @@ impl Direction {
             let beginnings = (-BEGINNINGS..=BEGINNINGS).map(|index| f64::from(index) / f64::from(BEGINNINGS));
             let paths = beginnings.map(|state| {
                 let mut states = vec![State { bounds: Bounds::at(state), is_settled: false }; unknown.len()];
-                if let Standstill::Slides { over_pa } = standstill
-                    && over_pa > 0.0
+                if let Standstill::Slides { over_pa, share } = standstill
+                    && (over_pa > 0.0 || share < 1.0)
                 {
-                    slide(&smooth_pa, over_pa, Bounds::at(state), &mut states);
+                    slide(&smooth_pa, over_pa, share, Bounds::at(state), &mut states);
                 }
                 (left(&states), states)
             });

@@ -40,9 +40,12 @@ impl Bounds {
         if self.is_known() { self.middle().signum() as i8 } else { 0 }
     }
 
-    /// After the friction has slid by `by`, in units of its range from 0 to 1.
-    fn slid(self, by: f64) -> Self {
-        Self { low: (self.low + by).clamp(-1.0, 1.0), high: (self.high + by).clamp(-1.0, 1.0) }
+    /// After the friction has slid by `by`, in units of its range from 0 to 1, up to `share` of it.
+    fn slid(self, by: f64, share: f64) -> Self {
+        let slid = |state: f64| {
+            if by > 0.0 { (state + by).min(share).max(state) } else { (state + by).max(-share).min(state) }
+        };
+        Self { low: slid(self.low), high: slid(self.high) }
     }
 }
 
@@ -83,8 +86,9 @@ pub(super) fn states_of(
     let noise_m = NOISE * thresholds.length_m / ((2 * half + 1) as f64).sqrt();
     let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
     let pushed: Vec<Range<usize>> = (0..resting.len()).filter_map(push).collect();
-    if let Standstill::Slides { over_pa } = thresholds.standstill
-        && over_pa <= 2.0 * thresholds.pressure_pa
+    let follows = |over_pa: f64, share: f64| over_pa <= 2.0 * thresholds.pressure_pa && share >= 1.0;
+    if let Standstill::Slides { over_pa, share } = thresholds.standstill
+        && follows(over_pa, share)
     {
         for still in &pushed {
             let rest = resting.iter().find(|rest| rest.contains(&still.start)).unwrap_or(still);
@@ -98,12 +102,12 @@ pub(super) fn states_of(
     let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
     slow.doubt(&resting, thresholds, &mut marks);
     let mut states = from_marks(&marks, carried);
-    if let Standstill::Slides { over_pa } = thresholds.standstill
-        && over_pa > 2.0 * thresholds.pressure_pa
+    if let Standstill::Slides { over_pa, share } = thresholds.standstill
+        && !follows(over_pa, share)
     {
         for still in &pushed {
             let before = if still.start > 0 { states[still.start - 1].bounds } else { carried };
-            slide(&pressure[still.clone()], over_pa, before, &mut states[still.clone()]);
+            slide(&pressure[still.clone()], over_pa, share, before, &mut states[still.clone()]);
             let after = states[still.end - 1];
             let unmoved = marks[still.end..].iter().take_while(|mark| **mark == 0).count();
             states[still.end..still.end + unmoved].fill(after);
@@ -220,11 +224,11 @@ fn from_marks(marks: &[i8], carried: Bounds) -> Vec<State> {
 
 /// Friction at a standstill that follows the smooth `pressure`: a stop that gives way from one sign to the other over
 /// `over_pa`. What it was before the standstill need not be known: once the pressure has moved far enough, it is.
-pub(super) fn slide(pressure: &[f64], over_pa: f64, before: Bounds, states: &mut [State]) {
+pub(super) fn slide(pressure: &[f64], over_pa: f64, share: f64, before: Bounds, states: &mut [State]) {
     let mut bounds = before;
     let mut last_pa = pressure[0];
     for (state, &pressure_pa) in states.iter_mut().zip(pressure) {
-        bounds = bounds.slid(2.0 * (pressure_pa - last_pa) / over_pa);
+        bounds = bounds.slid(2.0 * (pressure_pa - last_pa) / over_pa, share);
         last_pa = pressure_pa;
         *state = State { bounds, is_settled: true };
     }
@@ -543,7 +547,7 @@ mod tests {
     #[test]
     fn friction_that_slides_turns_over_with_so_much_pressure() {
         let (pressure, length) = held_length();
-        let thresholds = Thresholds { standstill: Standstill::Slides { over_pa: 4e4 }, ..THRESHOLDS };
+        let thresholds = Thresholds { standstill: Standstill::Slides { over_pa: 4e4, share: 1.0 }, ..THRESHOLDS };
         let states = states_of(&times(4000), &pressure, &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
         let at = |row: usize| states[row].bounds.middle();
         // 40 kPa take 200 rows down and 400 up.
@@ -553,10 +557,23 @@ mod tests {
     }
 
     #[test]
+    fn of_friction_that_slides_partly_the_rest_stays_until_the_pressure_has_turned_it() {
+        let (pressure, length) = held_length();
+        let standstill = Standstill::Slides { over_pa: 4e4, share: 0.4 };
+        let thresholds = Thresholds { standstill, ..THRESHOLDS };
+        let states = states_of(&times(4000), &pressure, &length, thresholds, Driver::Motion, Bounds::UNKNOWN);
+        let at = |row: usize| states[row].bounds.middle();
+        // A motion has brought about all of it, the pressure no more than its share either way.
+        for (row, expected) in [(1400, 1.0), (1600, 0.0), (1710, -0.4), (2500, -0.4), (2600, 0.1), (2910, 0.4)] {
+            assert!((at(row) - expected).abs() < 0.03, "row {row}: {}", at(row));
+        }
+    }
+
+    #[test]
     fn a_beginning_at_rest_is_unknown_until_something_moves_far_enough() {
         let (pressure, length) = (held_length().0[1000..].to_vec(), vec![0.24; 3000]);
         assert!(marks_under(Standstill::Held, &pressure, &length).iter().all(|&mark| mark == 0));
-        let marks = marks_under(Standstill::Slides { over_pa: 4e4 }, &pressure, &length);
+        let marks = marks_under(Standstill::Slides { over_pa: 4e4, share: 1.0 }, &pressure, &length);
         assert!(marks[..600].iter().all(|&mark| mark == 0));
         assert!(marks[720..1500].iter().all(|&mark| mark == -1));
         assert!(marks[1950..].iter().all(|&mark| mark == 1));

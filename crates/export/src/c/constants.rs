@@ -102,9 +102,9 @@ pub(super) fn parameter(id: &str, name: &str) -> String {
 /// Thresholds of the direction, for kinematics without the future.
 pub(super) fn of_direction(artifact: &ModelArtifact, model: &ForceModel) -> Vec<(String, f64)> {
     let thresholds = artifact.direction;
-    let (slides, over_pa) = match thresholds.standstill {
-        Standstill::Held => (0.0, 0.0),
-        Standstill::Slides { over_pa } => (1.0, over_pa),
+    let (slides, over_pa, share) = match thresholds.standstill {
+        Standstill::Held => (0.0, 0.0, 1.0),
+        Standstill::Slides { over_pa, share } => (1.0, over_pa, share),
     };
     let rest_slide_m_per_pa = model.slide_m_per_pa(model.muscle().rest_length_m);
     let named = [
@@ -114,6 +114,7 @@ pub(super) fn of_direction(artifact: &ModelArtifact, model: &ForceModel) -> Vec<
         ("TURN_M", thresholds.turn_m),
         ("STANDSTILL_SLIDES", slides),
         ("STANDSTILL_OVER_PA", over_pa),
+        ("STANDSTILL_SHARE", share),
         ("REST_SLIDE_THRESHOLD_M", rest_slide_m_per_pa * thresholds.pressure_pa),
         ("NOISE_PER_THRESHOLD", NOISE_PER_THRESHOLD),
         ("RATE_WINDOW_S", 2.0 * HALF_WINDOW_S),

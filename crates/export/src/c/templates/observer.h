@@ -55,17 +55,20 @@ static inline double pam_backlash_follow(pam_backlash_filter *filter, double noi
     return filter->position;
 }
 
-/* Friction while the length may stand still: at once with any pressure beyond noise, or sliding over PAM_STANDSTILL_OVER_PA. */
+/* Friction while the length may stand still: at once with any pressure beyond noise, or sliding over PAM_STANDSTILL_OVER_PA,
+   up to PAM_STANDSTILL_SHARE of it. */
 static inline void pam_still_follow(pam_observer *o, double pressure_step_pa)
 {
     const double pressure_pa = o->pressure.value;
     if (!PAM_STANDSTILL_SLIDES) {
         return;
     }
-    if (PAM_STANDSTILL_OVER_PA > 2.0 * PAM_PRESSURE_THRESHOLD_PA) {
+    if (PAM_STANDSTILL_OVER_PA > 2.0 * PAM_PRESSURE_THRESHOLD_PA || PAM_STANDSTILL_SHARE < 1.0) {
+        const double slid = o->still_state + 2.0 * pressure_step_pa / PAM_STANDSTILL_OVER_PA;
         o->still_low_pa = fmin(o->still_low_pa, pressure_pa);
         o->still_high_pa = fmax(o->still_high_pa, pressure_pa);
-        o->still_state = fmin(fmax(o->still_state + 2.0 * pressure_step_pa / PAM_STANDSTILL_OVER_PA, -1.0), 1.0);
+        o->still_state = pressure_step_pa > 0.0 ? fmax(o->still_state, fmin(slid, PAM_STANDSTILL_SHARE))
+                                                : fmin(o->still_state, fmax(slid, -PAM_STANDSTILL_SHARE));
     } else if (o->still_state <= 0.0 && pressure_pa - o->still_low_pa > PAM_PRESSURE_THRESHOLD_PA) {
         o->still_state = 1.0;
         o->still_high_pa = pressure_pa;
