@@ -16,6 +16,7 @@ pub mod explain;
 mod forms;
 pub mod given;
 mod held;
+mod held_error;
 pub mod hypothesis;
 pub mod isolability;
 pub mod joint;

@@ -41,9 +41,9 @@ impl Diagnosis {
                 numbers.floor_n
             ));
         }
-        let held = held::judge(self, agreement)?;
-        self.given.holdout_missed = held.missed;
-        self.noticed.extend(held.elsewhere.iter().cloned());
+        let held::Held { missed, elsewhere, unjudged } = held::judge(self, agreement)?;
+        self.given.holdout_missed = missed;
+        self.noticed.extend(elsewhere);
         if self.given.misses || !self.given.holdout_missed.is_empty() {
             self.verdict = match self.verdict {
                 Verdict::Consistent | Verdict::Unexplained => Verdict::Unexplained,
@@ -51,8 +51,8 @@ impl Diagnosis {
             };
         }
         self.statement = words::with_given(&self.given, &self.statement);
-        if !held.unjudged.is_empty() {
-            let missed = held.unjudged.join("; ");
+        if !unjudged.is_empty() {
+            let missed = unjudged.join("; ");
             self.statement.push_str(&format!(" Held out, {missed}: that judges the extrapolation, not the model."));
         }
         Ok(())
