@@ -69,6 +69,8 @@ pub struct Diagnosis {
     pub effects: Vec<NamedEffect>,
     /// What models the part that has no name.
     pub empirical: Option<Empirical>,
+    /// Base, effects and map without the empirical terms; none where there are no terms, or no effect beside them.
+    pub without_terms: Option<AugmentedModel>,
     /// Names that the recordings are too short or too coarse for, in words.
     pub too_short: Vec<String>,
     /// What was noticed of the recordings themselves, in words.
@@ -240,6 +242,9 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let sentences = own::sentences(&whole, state);
     let (effects, mut entries) = named(&whole, &found, state, &uncertainty, correlated, &sentences, knocks.as_ref());
     let empirical = discovery.as_ref().map(|discovery| discovery.written(&whole, &found, &folds));
+    // Where nothing is named, terms are compared with the base model.
+    let without_terms =
+        discovery.as_ref().filter(|_| !effects.is_empty()).map(|discovery| discovery.without_terms.clone());
     entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
     let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
     let mut terms = own::terms(state.terms(), &sentences);
@@ -280,6 +285,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         regions,
         effects,
         empirical,
+        without_terms,
         too_short,
         noticed: check::noticed(&estimation, &holdout, &found.base.state.model, &model)?,
         unexplained_share: sizes.share_left(),

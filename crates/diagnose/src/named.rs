@@ -109,7 +109,6 @@ pub(crate) fn named(
 /// What became of every candidate of the first look.
 pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
     let base = found.whole.held_out.mean_square();
-    let mismatch = (base - found.floor_square).max(f64::MIN_POSITIVE);
     let taken: Vec<&str> = found.best.state.guesses.iter().map(Guess::id).collect();
     let rivals: Vec<&str> = (0..taken.len()).flat_map(|index| alternatives(found, index)).collect();
     found
@@ -117,7 +116,7 @@ pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
         .iter()
         .map(|trial| {
             let id = trial.guess.id();
-            let explains = ((base - trial.held_out.mean_square()) / mismatch).clamp(0.0, 1.0);
+            let explains = (1.0 - trial.held_out.mean_square() / base.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
             let outcome = if taken.contains(&id) || (knocks && id == knocks::ID) {
                 "named".to_owned()
             } else if rivals.contains(&id) {
