@@ -16,7 +16,7 @@ use crate::discover;
 use crate::error::DiagnoseError;
 use crate::given::Given;
 use crate::isolability::isolability;
-use crate::knocks::{self, Knocks};
+use crate::knocks::{self, InertialTransient};
 use crate::laws;
 use crate::map_held;
 use crate::named::{candidates, map_entry, named, term_entry};
@@ -24,7 +24,7 @@ use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::own;
 use crate::places::{regions, structured, telling};
 use crate::plausible::implausible;
-use crate::question::{Answer, Question};
+use crate::problem::{DiagnosisProblem, SearchOutcome};
 use crate::search::Limits;
 use crate::short;
 use crate::stand_ins;
@@ -123,11 +123,15 @@ pub fn check(request: Request) -> Result<(), DiagnoseError> {
     let track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
     let limits = limits(&config, effects, &model, &estimation, false)?;
-    given(&Question::new(&estimation, &model, limits), &holdout, accept_implausible).map(|_| ())
+    given(&DiagnosisProblem::new(&estimation, &model, limits), &holdout, accept_implausible).map(|_| ())
 }
 
 /// The model as given; recordings of clearly another muscle are refused unless they are to be accepted.
-fn given(question: &Question<'_>, holdout: &[Prepared], accept_implausible: bool) -> Result<Given, DiagnoseError> {
+fn given(
+    question: &DiagnosisProblem<'_>,
+    holdout: &[Prepared],
+    accept_implausible: bool,
+) -> Result<Given, DiagnoseError> {
     let given = Given::of(question, holdout)?;
     if !accept_implausible {
         given.refuse_another_muscle(question.estimation)?;
@@ -171,7 +175,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let mut track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
     let limits = limits(&config, own, &model, &estimation, !holdout.is_empty())?;
-    let mut given = given(&Question::new(&estimation, &model, limits.clone()), &holdout, accept_implausible)?;
+    let mut given = given(&DiagnosisProblem::new(&estimation, &model, limits.clone()), &holdout, accept_implausible)?;
     // Reading the channels, each look, and what is said of the outcome; a search may end early.
     let (steps, done) = (config.max_effects as u64 + 3, std::cell::Cell::new(1));
     let advance = || {
@@ -179,17 +183,17 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         observer(done.get(), steps);
     };
     observer(done.get(), steps);
-    let mut answer = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
+    let mut answer = DiagnosisProblem::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
     for _ in 0..MOST_LAWS {
-        let question = Question::new(&estimation, &model, limits.clone());
+        let question = DiagnosisProblem::new(&estimation, &model, limits.clone());
         let Some(standstill) = laws::better(&question, &answer.track, &answer.found, model.direction)? else { break };
         let before = model.direction.standstill;
         model.direction.standstill = standstill;
         redirect(&mut estimation, model.direction, model.form)?;
         redirect(&mut holdout, model.direction, model.form)?;
         track = Track::of(&estimation, model.direction, &model.force_model())?;
-        let other = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
-        let left = |answer: &Answer| answer.found.best.held_out.mean_square();
+        let other = DiagnosisProblem::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
+        let left = |answer: &SearchOutcome| answer.found.best.held_out.mean_square();
         if left(&other) >= left(&answer) {
             model.direction.standstill = before;
             redirect(&mut estimation, model.direction, model.form)?;
@@ -198,8 +202,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         }
         answer = other;
     }
-    let question = Question::new(&estimation, &model, limits);
-    let Answer { track, mut found, knocks, mut sizes } = answer;
+    let question = DiagnosisProblem::new(&estimation, &model, limits);
+    let SearchOutcome { track, mut found, knocks, mut sizes } = answer;
     let held = (!holdout.is_empty()).then(|| Track::of(&holdout, model.direction, &model.force_model())).transpose()?;
     if let Some(held) = held.as_ref().filter(|_| knocks.is_none()) {
         found = veto::confirmed(&question, &track, found, held)?;
@@ -267,7 +271,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     // Where the mass that knocks is all there is to confirm.
     let mass = || {
         let knocks = knocks.as_ref().filter(|_| verdict == Verdict::Explained)?;
-        confirm_mass(Knocks::effect(), knocks.mass_kg(), state, &model.domain)
+        confirm_mass(InertialTransient::effect(), knocks.mass_kg(), state, &model.domain)
     };
     let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(mass);
     let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
