@@ -66,16 +66,16 @@ pub(crate) fn envelope(
     let spreads = &plan.spreads;
     let percent = |share: f64| format!("±{:.0} %", 100.0 * share);
     Ok(envelope_figure(&EnvelopeFigure {
-        title: format!("{} lifts with what nobody knows exactly", trials.n_trials),
+        title: format!("Robustness of the lift: {} trials", trials.n_trials),
         subtitle: format!(
-            "Load {}, friction {}, valve lag {}, geometry {}, sensor noise {}{}\u{2003}·\u{2003}slack {}, saturated {}, \
-             given up {}",
+            "Load {}, friction {}, valve lag {}, geometry {}, noise {}{}\u{2003}·\u{2003}{} slack, {} saturated, \
+             {} given up",
             percent(spreads.payload),
             percent(spreads.friction),
             percent(spreads.lag),
             percent(spreads.geometry),
             percent(spreads.noise),
-            if spreads.model_parameters { ", parameters of the model from their covariance" } else { "" },
+            if spreads.model_parameters { ", parameters from their covariance" } else { "" },
             trials.n_slack,
             trials.n_saturated,
             trials.n_diverged

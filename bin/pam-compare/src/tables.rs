@@ -81,7 +81,7 @@ fn errors(artifact: &ComparisonArtifact) -> String {
 }
 
 fn parameters(artifact: &ComparisonArtifact) -> String {
-    let mut table = Table::new(["parameter", "A", "B", "difference, std errors"]);
+    let mut table = Table::new(["parameter", "A", "B", "std errors"]);
     for parameter in &artifact.parameters {
         let ComparedParameter { name, unit, a, stderr_a, b, stderr_b, standard_errors } = parameter;
         let value = |value: &Option<f64>, stderr: &Option<f64>| match (value, stderr) {

@@ -42,7 +42,7 @@ pub(crate) fn table(artifact: &DiagnosisArtifact) -> Option<String> {
     }
     if let Some(holdout) = empirical.holdout {
         say(&format!(
-            "Held-out recordings, all samples: {} N without, {} N with.",
+            "RMSE on held-out recordings: {} → {} N.",
             significant(holdout.rmse_without_n, 3),
             significant(holdout.rmse_with_n, 3)
         ));

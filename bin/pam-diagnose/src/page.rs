@@ -17,6 +17,11 @@ use crate::empirical;
 use crate::own::OwnEffects;
 use crate::provenance::Provenance;
 
+/// Whether anything was added to the model.
+pub(crate) fn has_additions(artifact: &DiagnosisArtifact) -> bool {
+    !artifact.effects.is_empty() || artifact.empirical.is_some() || artifact.static_map
+}
+
 /// Everything that the report shows.
 ///
 /// `model` is the one that was diagnosed, `augmented` the one with the effects.
@@ -27,7 +32,7 @@ pub(crate) fn page(
     traces: Vec<Trace>,
     provenance: Provenance,
 ) -> DiagnosisPage {
-    let with_effects = !artifact.effects.is_empty() || artifact.empirical.is_some();
+    let with_effects = has_additions(artifact);
     DiagnosisPage {
         title: format!("Diagnosis of {}", model.muscle_title()),
         verdict: match artifact.verdict {
@@ -47,6 +52,7 @@ pub(crate) fn page(
         regions: significant(&artifact.regions).map(region).collect(),
         effects: artifact.effects.iter().map(|named| effect(named, own)).collect(),
         empirical: artifact.empirical.as_ref().map(empirical::page),
+        static_map: artifact.static_map,
         candidates: artifact
             .candidates
             .iter()

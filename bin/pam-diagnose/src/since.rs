@@ -140,7 +140,7 @@ fn text(artifact: &ChangeArtifact) -> String {
             table.row([change.id.clone(), String::new(), String::new(), String::new(), gain]);
             for compared in &change.differences {
                 let [then, now, errors] = cells(compared);
-                table.row([format!("  {}", compared.name), then, now, errors]);
+                table.row([format!("  {}", own_name(&compared.name, &change.id)), then, now, errors]);
             }
             for other in &change.alternatives {
                 table.row([format!("  or {other}")]);
@@ -169,6 +169,11 @@ fn text(artifact: &ChangeArtifact) -> String {
     text
 }
 
+/// The name of a number without the effect that it is of, which is named above it.
+fn own_name<'a>(name: &'a str, effect: &str) -> &'a str {
+    name.strip_prefix(effect).and_then(|name| name.strip_prefix('.')).unwrap_or(name)
+}
+
 /// Then, now with the standard error of the difference, and the difference over it.
 fn cells(compared: &Compared) -> [String; 3] {
     let unit = &compared.unit;
@@ -176,8 +181,8 @@ fn cells(compared: &Compared) -> [String; 3] {
         Some(stderr) => engineering_with_stderr(compared.now, stderr, unit),
         None => engineering(compared.now, unit, 3),
     };
-    let errors = compared.standard_errors.map_or("-".to_owned(), |errors| format!("{errors:+.1}"));
-    [compared.then.map_or("-".to_owned(), |then| engineering(then, unit, 3)), now, errors]
+    let errors = compared.standard_errors.map_or("–".to_owned(), |errors| format!("{errors:+.1}"));
+    [compared.then.map_or("–".to_owned(), |then| engineering(then, unit, 3)), now, errors]
 }
 
 fn page(artifact: &ChangeArtifact, appendix: PageAppendix, traces: Vec<LaterTrace>) -> ChangePage {
@@ -187,7 +192,14 @@ fn page(artifact: &ChangeArtifact, appendix: PageAppendix, traces: Vec<LaterTrac
     };
     let change = |change: &Change| PageChange {
         said: words::titled(change),
-        numbers: change.differences.iter().map(compared).collect(),
+        numbers: change
+            .differences
+            .iter()
+            .map(|difference| PageCompared {
+                name: own_name(&difference.name, &change.id).to_owned(),
+                ..compared(difference)
+            })
+            .collect(),
         rmse_n: [change.evidence.rmse_without_n, change.evidence.rmse_with_n],
         alternatives: change.alternatives.clone(),
     };

@@ -1,7 +1,7 @@
 //! What a person reads on the terminal.
 
 use pam_core::artifact::DiagnosisArtifact;
-use pam_core::artifact::diagnosis::{BeforeAfter, Region, Residual, Verdict};
+use pam_core::artifact::diagnosis::{BeforeAfter, Evidence, Region, Residual, Verdict};
 use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
 use pam_diagnosis::words;
 use pam_report::Table;
@@ -54,8 +54,7 @@ fn effects(artifact: &DiagnosisArtifact) -> Option<String> {
     let mut table = Table::new(["effect", "value", "validation RMSE N", "p"]);
     for effect in &artifact.effects {
         let evidence = &effect.evidence;
-        let gain = format!("{} → {}", significant(evidence.rmse_without_n, 3), significant(evidence.rmse_with_n, 3));
-        table.row([effect.id.clone(), String::new(), gain, probability(evidence.p_value)]);
+        table.row([effect.id.clone(), String::new(), gain(evidence), probability(evidence.p_value)]);
         for parameter in &effect.parameters {
             table.row([format!("  {}", parameter.name), value(parameter)]);
         }
@@ -64,6 +63,11 @@ fn effects(artifact: &DiagnosisArtifact) -> Option<String> {
         }
     }
     Some(format!("Missing physics\n{}", table.to_terminal()))
+}
+
+/// RMSE over blocks left out of the fit, without and with an effect.
+fn gain(evidence: &Evidence) -> String {
+    format!("{} → {}", significant(evidence.rmse_without_n, 3), significant(evidence.rmse_with_n, 3))
 }
 
 fn value(entry: &ParameterEntry) -> String {
@@ -80,8 +84,8 @@ fn value(entry: &ParameterEntry) -> String {
 
 /// Residuals before and after, over counted and over all samples.
 fn fit(artifact: &DiagnosisArtifact) -> String {
-    let mut table = Table::new(["RMSE", "samples", "as given N", "refitted N", "with effects N", "noise N"]);
-    let with_effects = !artifact.effects.is_empty() || artifact.empirical.is_some();
+    let mut table = Table::new(["RMSE", "samples", "as given N", "refitted N", "augmented N", "noise N"]);
+    let with_effects = page::has_additions(artifact);
     let mut rows = |name: &str, given: Option<Residual>, fit: &BeforeAfter| {
         let counted = [given.map(|given| given.rmse_n), Some(fit.rmse_before_n), Some(fit.rmse_after_n)];
         let all = [given.map(|given| given.rmse_all_n), Some(fit.rmse_all_before_n), Some(fit.rmse_all_after_n)];
@@ -133,9 +137,10 @@ fn candidates(artifact: &DiagnosisArtifact) -> Option<String> {
     if artifact.candidates.is_empty() {
         return None;
     }
-    let mut table = Table::new(["candidate, alone", "explains", "outcome"]);
+    let mut table = Table::new(["candidate, alone", "validation RMSE N", "outcome"]);
     for candidate in artifact.candidates.iter().take(CANDIDATES) {
-        table.row([candidate.id.clone(), format!("{:.0} %", 100.0 * candidate.explains), candidate.outcome.clone()]);
+        let gain = gain(&candidate.evidence);
+        table.row([candidate.id.clone(), gain, candidate.outcome.clone()]);
     }
     Some(table.to_terminal())
 }

@@ -16,6 +16,7 @@ use pam_core::recording::{ReadOptions, Recording, read_recording};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
 use pam_identification::search_space::LATEX_RATIO;
+use pam_report::number::significant;
 use pam_virtual_bench::{Bench, Concealed, Options, Parameters, TrueMuscle, command};
 
 const FITTED: [&str; 3] = ["minor-loops", "isobaric-triangles", "isometric-ramps"];
@@ -401,6 +402,31 @@ fn an_effect_of_a_users_own_is_named_and_its_model_works_without_its_file() {
     assert!(model.effects.iter().any(|entry| entry.sentence.is_some()));
     let text = String::from_utf8(desk.run("--effects guard.toml --explain touching-guard").stdout).unwrap();
     assert!(text.starts_with("A guard that touches the muscle (touching-guard)\n"), "{text}");
+}
+
+#[test]
+fn the_gain_of_an_empirical_term_is_one_number_in_artifact_statement_table_and_report() {
+    let desk = Desk::touched();
+    // What the catalogue has for a force over the length, so that it stays without a name.
+    let excluded = "--exclude braid-lockup --exclude end-taper --exclude series-compliance";
+    let output = desk.run(&format!("{LOGS} --model model.json {HELD} {excluded} --out terms.json --report terms.html"));
+    let (diagnosis, _) = DiagnosisArtifact::read(&desk.path("terms.json")).unwrap();
+    let statement = &diagnosis.statement;
+    assert_eq!((diagnosis.verdict, diagnosis.effects.len()), (Verdict::Unexplained, 0), "{statement}");
+    assert_eq!((output.status.code(), diagnosis.unexplained_share), (Some(1), 1.0));
+    let (fit, term) = (diagnosis.fit.holdout.unwrap(), diagnosis.empirical.unwrap().holdout.unwrap());
+    assert_eq!((term.rmse_without_n, term.rmse_with_n), (fit.rmse_before_n, fit.rmse_after_n));
+    let [before, after] = [fit.rmse_before_n, fit.rmse_after_n].map(|rmse_n| format!("{rmse_n:.2}"));
+    assert!(statement.contains(&format!("RMSE on held-out recordings from {before} to {after} N")), "{statement}");
+    let table = String::from_utf8(output.stderr).unwrap();
+    let [before, after] = [fit.rmse_before_n, fit.rmse_after_n].map(|rmse_n| significant(rmse_n, 3));
+    assert!(table.contains(&format!("RMSE on held-out recordings: {before} → {after} N.")), "{table}");
+    let report = std::fs::read_to_string(desk.path("terms.html")).unwrap();
+    // A card shows two digits below 1 N, as many decimals as above it.
+    let [before, after] =
+        [fit.rmse_before_n, fit.rmse_after_n].map(|rmse_n| significant(rmse_n, if rmse_n < 0.995 { 2 } else { 3 }));
+    let card = format!("{before} N → {after} N");
+    assert!(report.contains(&format!(">{card}<")), "no card says {card}");
 }
 
 #[test]

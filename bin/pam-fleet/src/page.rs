@@ -16,8 +16,8 @@ use pam_report::{
 pub(crate) fn page(survey: &Survey, folder: Option<&str>) -> FleetPage {
     let several_makes = survey.records.windows(2).any(|pair| pair[0].campaign.make != pair[1].campaign.make);
     let title = |chart: &Chart| match chart.make.as_str() {
-        make if several_makes && !make.is_empty() => format!("{} of {make}", chart.name),
-        _ => chart.name.clone(),
+        make if several_makes && !make.is_empty() => format!("{} of {make}", chart.name.replace("^2", "²")),
+        _ => chart.name.replace("^2", "²"),
     };
     let mut shifts: Vec<&GroupShift> = survey.groups.iter().filter(|group| group.differs()).collect();
     shifts.sort_by(|a, b| b.distance.abs().total_cmp(&a.distance.abs()));

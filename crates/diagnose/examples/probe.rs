@@ -3,7 +3,7 @@
 
 use pam_core::artifact::ModelArtifact;
 use pam_core::recording::{ReadOptions, read_recording};
-use pam_diagnosis::question::{Answer, Question};
+use pam_diagnosis::problem::{DiagnosisProblem, SearchOutcome};
 use pam_diagnosis::search::{Limits, chance};
 use pam_diagnosis::track::Track;
 use pam_identification::prepare::{direct, gate};
@@ -26,8 +26,8 @@ fn main() {
         sensor_floor_n: model.fit.noise_floor_n,
         confirmed: false,
     };
-    let question = Question::new(&prepared, &model, limits);
-    let Answer { track, found, knocks, sizes } = question.answer(track, &|| {}).unwrap();
+    let question = DiagnosisProblem::new(&prepared, &model, limits);
+    let SearchOutcome { track, found, knocks, sizes } = question.answer(track, &|| {}).unwrap();
     let setting = question.setting(&track, &found.nuisance);
     println!(
         "base {:.3} N, floor {:.3} N, sensor floor {:.3} N",
@@ -45,7 +45,7 @@ fn main() {
             trial.guess.shape
         );
     }
-    let remainder = pam_diagnosis::structure::Remainder::of(&setting, &found.best.state);
+    let remainder = pam_diagnosis::structure::ProjectedResidual::of(&setting, &found.best.state);
     for feature in &found.features {
         let one = remainder.structure(&[feature]);
         println!(

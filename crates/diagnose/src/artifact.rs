@@ -39,6 +39,8 @@ pub struct Agreement {
     pub estimation: Evaluation,
     /// Base model and effects on what was held out.
     pub holdout: Evaluation,
+    /// The same without empirical terms; none where there are none.
+    pub holdout_without_terms: Option<FitStatistics>,
     /// What the noise of all channels leaves of a perfect model on the estimation recordings, in N.
     pub noise_floor_n: f64,
     /// Independent samples that the estimation recordings are worth.
@@ -52,9 +54,16 @@ impl Agreement {
     /// [`DiagnoseError::Recording`] where samples cannot be read back.
     pub fn of(diagnosis: &Diagnosis) -> Result<Self, DiagnoseError> {
         let Diagnosis { estimation, holdout, base, augmented, model, .. } = diagnosis;
+        let base_holdout = evaluate(holdout, base)?;
+        let holdout_without_terms = match (&diagnosis.without_terms, &diagnosis.empirical) {
+            (Some(without), _) => evaluate_augmented(holdout, &without.without_events(), model.direction)?.together,
+            (None, Some(_)) => base_holdout.together.clone(),
+            (None, None) => None,
+        };
         Ok(Self {
             base_estimation: evaluate(estimation, base)?,
-            base_holdout: evaluate(holdout, base)?,
+            base_holdout,
+            holdout_without_terms,
             estimation: evaluate_augmented(estimation, augmented, model.direction)?,
             holdout: evaluate_augmented(holdout, &augmented.without_events(), model.direction)?,
             noise_floor_n: noise_floor_n(estimation, augmented.base())?,
@@ -126,6 +135,7 @@ impl Diagnosis {
             regions: self.regions.clone(),
             effects: self.effects.clone(),
             empirical: self.empirical.clone(),
+            static_map: self.has_map(),
             fit: DiagnosisFit {
                 estimation: pair(&together(&agreement.base_estimation), &together(&agreement.estimation)),
                 holdout: held.map(|(before, after)| pair(&before, &after)),

@@ -17,7 +17,7 @@ use crate::discover;
 use crate::error::DiagnoseError;
 use crate::given::Given;
 use crate::isolability::isolability;
-use crate::knocks::{self, Knocks};
+use crate::knocks::{self, InertialTransient};
 use crate::laws;
 use crate::map_held;
 use crate::named::{candidates, map_entry, named, term_entry};
@@ -25,7 +25,7 @@ use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::own;
 use crate::places::{regions, structured, telling};
 use crate::plausible::implausible;
-use crate::question::{Answer, Question};
+use crate::problem::{DiagnosisProblem, SearchOutcome};
 use crate::search::Limits;
 use crate::short;
 use crate::stand_ins;
@@ -70,6 +70,8 @@ pub struct Diagnosis {
     pub effects: Vec<NamedEffect>,
     /// What models the part that has no name.
     pub empirical: Option<Empirical>,
+    /// Base, effects and map without the empirical terms; none where there are no terms, or no effect beside them.
+    pub without_terms: Option<AugmentedModel>,
     /// Names that the recordings are too short or too coarse for, in words.
     pub too_short: Vec<String>,
     /// What was noticed of the recordings themselves, in words.
@@ -122,11 +124,15 @@ pub fn check(request: Request) -> Result<(), DiagnoseError> {
     let track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
     let limits = limits(&config, effects, &model, &estimation, false)?;
-    given(&Question::new(&estimation, &model, limits), &holdout, accept_implausible).map(|_| ())
+    given(&DiagnosisProblem::new(&estimation, &model, limits), &holdout, accept_implausible).map(|_| ())
 }
 
 /// The model as given; recordings of clearly another muscle are refused unless they are to be accepted.
-fn given(question: &Question<'_>, holdout: &[Prepared], accept_implausible: bool) -> Result<Given, DiagnoseError> {
+fn given(
+    question: &DiagnosisProblem<'_>,
+    holdout: &[Prepared],
+    accept_implausible: bool,
+) -> Result<Given, DiagnoseError> {
     let given = Given::of(question, holdout)?;
     if !accept_implausible {
         given.refuse_another_muscle(question.estimation)?;
@@ -166,11 +172,11 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
 /// As [`diagnose`].
 pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Result<Diagnosis, DiagnoseError> {
     let Request { estimation, holdout, mut model, config, effects: own, accept_implausible } = request;
-    let (mut estimation, mut holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
-    let mut track = Track::of(&estimation, model.direction, &model.force_model())?;
+    let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
+    let track = Track::of(&estimation, model.direction, &model.force_model())?;
     check::long_enough(&track, &estimation)?;
     let limits = limits(&config, own, &model, &estimation, !holdout.is_empty())?;
-    let mut given = given(&Question::new(&estimation, &model, limits.clone()), &holdout, accept_implausible)?;
+    let mut given = given(&DiagnosisProblem::new(&estimation, &model, limits.clone()), &holdout, accept_implausible)?;
     // Reading the channels, each look, and what is said of the outcome; a search may end early.
     let (steps, done) = (config.max_effects as u64 + 3, std::cell::Cell::new(1));
     let advance = || {
@@ -178,28 +184,11 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         observer(done.get(), steps);
     };
     observer(done.get(), steps);
-    let mut answer = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
-    for _ in 0..MOST_LAWS {
-        let question = Question::new(&estimation, &model, limits.clone());
-        let Some(standstill) = laws::better(&question, &answer.track, &answer.found, model.direction)? else { break };
-        let before = (model.direction, held_n(&holdout, &answer, model.direction)?);
-        model.direction.standstill = standstill;
-        redirect(&mut estimation, model.direction, model.form)?;
-        redirect(&mut holdout, model.direction, model.form)?;
-        track = Track::of(&estimation, model.direction, &model.force_model())?;
-        let other = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
-        let left = |answer: &Answer| answer.found.best.held_out.mean_square();
-        // What judges names judges laws as well.
-        if left(&other) >= left(&answer) || held_n(&holdout, &other, model.direction)? > before.1 {
-            model.direction = before.0;
-            redirect(&mut estimation, model.direction, model.form)?;
-            redirect(&mut holdout, model.direction, model.form)?;
-            break;
-        }
-        answer = other;
-    }
-    let question = Question::new(&estimation, &model, limits);
-    let Answer { track, mut found, knocks, mut sizes } = answer;
+    let mut recordings = Recordings { estimation, holdout };
+    let outcome = recordings.under_best_law(&mut model, &limits, track, &advance)?;
+    let Recordings { mut estimation, mut holdout } = recordings;
+    let question = DiagnosisProblem::new(&estimation, &model, limits);
+    let SearchOutcome { track, mut found, knocks, mut sizes } = outcome;
     let held = (!holdout.is_empty()).then(|| Track::of(&holdout, model.direction, &model.force_model())).transpose()?;
     if let Some(held) = held.as_ref().filter(|_| knocks.is_none()) {
         found = veto::confirmed(&question, &track, found, held)?;
@@ -242,6 +231,9 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let sentences = own::sentences(&whole, state);
     let (effects, mut entries) = named(&whole, &found, state, &uncertainty, correlated, &sentences, knocks.as_ref());
     let empirical = discovery.as_ref().map(|discovery| discovery.written(&whole, &found, &folds));
+    // Where nothing is named, terms are compared with the base model.
+    let without_terms =
+        discovery.as_ref().filter(|_| !effects.is_empty()).map(|discovery| discovery.without_terms.clone());
     entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
     let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
     let mut terms = own::terms(state.terms(), &sentences);
@@ -264,7 +256,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     // Where the mass that knocks is all there is to confirm.
     let mass = || {
         let knocks = knocks.as_ref().filter(|_| verdict == Verdict::Explained)?;
-        confirm_mass(Knocks::effect(), knocks.mass_kg(), state, &model.domain)
+        confirm_mass(InertialTransient::effect(), knocks.mass_kg(), state, &model.domain)
     };
     let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(mass);
     let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
@@ -282,6 +274,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         regions,
         effects,
         empirical,
+        without_terms,
         too_short,
         noticed: check::noticed(&estimation, &holdout, &found.base.state.model, &model)?,
         unexplained_share: sizes.share_left(),
@@ -305,11 +298,54 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     Ok(diagnosis)
 }
 
-/// What `answer` leaves of `holdout`, root mean square over all samples, in N; nothing where nothing was held out.
-fn held_n(holdout: &[Prepared], answer: &Answer, direction: Thresholds) -> Result<f64, DiagnoseError> {
-    let state = &answer.found.best.state;
-    let augmented = AugmentedModel::new(state.model.clone(), state.terms()).without_events();
-    Ok(evaluate_augmented(holdout, &augmented, direction)?.together.map_or(0.0, |together| together.rmse_all_n))
+/// Recordings as directions are found in them.
+struct Recordings {
+    estimation: Vec<Prepared>,
+    holdout: Vec<Prepared>,
+}
+
+impl Recordings {
+    /// The directions found anew, in the model as well.
+    fn redirect(&mut self, model: &mut ModelArtifact, direction: Thresholds) -> Result<(), DiagnoseError> {
+        model.direction = direction;
+        redirect(&mut self.estimation, direction, model.form)?;
+        Ok(redirect(&mut self.holdout, direction, model.form)?)
+    }
+
+    /// What is found under the law of friction at standstill that fits best beside it; recordings and model follow that law.
+    fn under_best_law(
+        &mut self,
+        model: &mut ModelArtifact,
+        limits: &Limits,
+        track: Track,
+        advance: &dyn Fn(),
+    ) -> Result<SearchOutcome, DiagnoseError> {
+        let mut best = DiagnosisProblem::new(&self.estimation, model, limits.clone()).answer(track, advance)?;
+        for _ in 0..MOST_LAWS {
+            let problem = DiagnosisProblem::new(&self.estimation, model, limits.clone());
+            let Some(standstill) = laws::better(&problem, &best.track, &best.found, model.direction)? else { break };
+            let (before, before_n) = (model.direction, self.held_n(&best, model.direction)?);
+            self.redirect(model, Thresholds { standstill, ..before })?;
+            let track = Track::of(&self.estimation, model.direction, &model.force_model())?;
+            let other = DiagnosisProblem::new(&self.estimation, model, limits.clone()).answer(track, advance)?;
+            let left = |outcome: &SearchOutcome| outcome.found.best.held_out.mean_square();
+            // What judges names judges laws as well.
+            if left(&other) >= left(&best) || self.held_n(&other, model.direction)? > before_n {
+                self.redirect(model, before)?;
+                break;
+            }
+            best = other;
+        }
+        Ok(best)
+    }
+
+    /// What is left of the hold-outs, root mean square over all samples, in N; nothing where nothing was held out.
+    fn held_n(&self, outcome: &SearchOutcome, direction: Thresholds) -> Result<f64, DiagnoseError> {
+        let state = &outcome.found.best.state;
+        let augmented = AugmentedModel::new(state.model.clone(), state.terms()).without_events();
+        let together = evaluate_augmented(&self.holdout, &augmented, direction)?.together;
+        Ok(together.map_or(0.0, |together| together.rmse_all_n))
+    }
 }
 
 /// The base model that leaves less on the recordings at their full rate: as it was identified, if that was on these, or as

@@ -9,7 +9,7 @@ use pam_core::effects::Kind;
 use pam_core::effects::static_map::legendre;
 
 use crate::coordinates::Coordinates;
-use crate::hypothesis::Guess;
+use crate::hypothesis::CandidateEffect;
 use crate::nuisance::{Nuisance, over_range};
 use crate::state::{Setting, State};
 
@@ -93,13 +93,13 @@ fn over_quantiles(values: &[f64], counted: &[bool]) -> Vec<f64> {
 }
 
 /// Force of `guesses` with the weights of `state`, in N at every instant.
-fn force_n(setting: &Setting<'_>, state: &State, guesses: &[Guess]) -> Vec<f64> {
+fn force_n(setting: &Setting<'_>, state: &State, guesses: &[CandidateEffect]) -> Vec<f64> {
     let sheet = setting.ground().sheet(guesses, &state.model);
     (0..setting.track.n()).map(|at| sheet.force_n(at, &state.fit.weights)).collect()
 }
 
 /// The same without `n` amplitudes from position `first` on.
-fn partial_n(setting: &Setting<'_>, state: &State, guesses: &[Guess], first: usize, n: usize) -> Vec<f64> {
+fn partial_n(setting: &Setting<'_>, state: &State, guesses: &[CandidateEffect], first: usize, n: usize) -> Vec<f64> {
     let sheet = setting.ground().sheet(guesses, &state.model);
     let mut weights = state.fit.weights.clone();
     let from = pam_core::force::columns::N_COLUMNS + first;

@@ -22,7 +22,7 @@ use crate::artifact::together;
 use crate::base;
 use crate::error::DiagnoseError;
 use crate::nuisance;
-use crate::question::Question;
+use crate::problem::DiagnosisProblem;
 use crate::search::Found;
 use crate::state::Setting;
 use crate::track::Track;
@@ -59,8 +59,8 @@ impl Given {
     ///
     /// # Errors
     /// [`DiagnoseError::Recording`] where samples cannot be read back, or the model has no force for one.
-    pub(crate) fn of(question: &Question<'_>, holdout: &[Prepared]) -> Result<Self, DiagnoseError> {
-        let Question { estimation, model, .. } = question;
+    pub(crate) fn of(question: &DiagnosisProblem<'_>, holdout: &[Prepared]) -> Result<Self, DiagnoseError> {
+        let DiagnosisProblem { estimation, model, .. } = question;
         // Events belong to the recordings of another diagnosis.
         let given = model.augmented_model().without_events();
         let on_estimation = evaluate_augmented(estimation, &given, model.direction)?;
@@ -104,7 +104,7 @@ impl Given {
 
     /// Takes back that the model misses the recordings where it follows them with the effects that were found beside it, its
     /// own parameters held, nearly as well as with parameters that are free.
-    pub(crate) fn beside_effects(&mut self, question: &Question<'_>, track: &Track, found: &Found) {
+    pub(crate) fn beside_effects(&mut self, question: &DiagnosisProblem<'_>, track: &Track, found: &Found) {
         let state = &found.best.state;
         if !self.misses || state.guesses.is_empty() {
             return;
@@ -157,8 +157,11 @@ impl Given {
 
 /// The model with its free base parameters refitted to all samples that count, beside its effects as they are, and how far
 /// each of them moved.
-fn refitted(question: &Question<'_>, given: &AugmentedModel) -> Result<(AugmentedModel, Vec<Shift>), DiagnoseError> {
-    let Question { estimation, model, space, columns, .. } = question;
+fn refitted(
+    question: &DiagnosisProblem<'_>,
+    given: &AugmentedModel,
+) -> Result<(AugmentedModel, Vec<Shift>), DiagnoseError> {
+    let DiagnosisProblem { estimation, model, space, columns, .. } = question;
     let condensed = condense(estimation, columns, 1, None)?;
     let problem = ForceProblem { summary: &condensed.total, columns, space, steps: &[] };
     let nominal: Vec<f64> =

@@ -4,7 +4,7 @@ use pam_core::effects::{Amplitude, Effect, Role};
 
 /// An effect with values for its shape.
 #[derive(Clone)]
-pub struct Guess {
+pub struct CandidateEffect {
     /// The effect.
     pub effect: &'static dyn Effect,
     /// Values of its shape parameters, SI.
@@ -26,7 +26,7 @@ pub enum Sign {
     Negative,
 }
 
-impl Guess {
+impl CandidateEffect {
     /// Catalogue id.
     pub fn id(&self) -> &'static str {
         self.effect.page().id
@@ -62,18 +62,18 @@ impl Guess {
     }
 }
 
-impl std::fmt::Debug for Guess {
+impl std::fmt::Debug for CandidateEffect {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_struct("Guess").field("id", &self.id()).field("shape", &self.shape).finish()
+        formatter.debug_struct("CandidateEffect").field("id", &self.id()).field("shape", &self.shape).finish()
     }
 }
 
 /// Amplitudes of several guesses together.
-pub fn n_amplitudes(guesses: &[Guess]) -> usize {
+pub fn n_amplitudes(guesses: &[CandidateEffect]) -> usize {
     guesses.iter().map(|guess| guess.amplitudes().len()).sum()
 }
 
 /// Ranges of the amplitudes of several guesses, in order.
-pub fn ranges(guesses: &[Guess]) -> Vec<(f64, f64)> {
-    guesses.iter().flat_map(Guess::ranges).collect()
+pub fn ranges(guesses: &[CandidateEffect]) -> Vec<(f64, f64)> {
+    guesses.iter().flat_map(CandidateEffect::ranges).collect()
 }

@@ -14,8 +14,8 @@ use pam_core::artifact::diagnosis::Isolability;
 use pam_core::effects::{AugmentedModel, Effect, Role, Term};
 use rayon::prelude::*;
 
-use crate::hypothesis::{Guess, Sign};
-use crate::sheet::Ground;
+use crate::design_matrix::Regressors;
+use crate::hypothesis::{CandidateEffect, Sign};
 use crate::state::{Setting, State};
 use crate::tangent::{Tangent, dot, norm};
 use pam_core::shift::shifted;
@@ -72,14 +72,14 @@ static TYPICAL: [Typical; 22] = [
 pub fn isolability(setting: &Setting<'_>, state: &State, noise_n: f64, n_independent: f64) -> Isolability {
     let rows = groups(setting, state).into_iter().map(|group| (group.clone(), group.len() as f64)).collect();
     let tangent = Tangent::of(setting, state, &state.sheet, rows);
-    let jobs: Vec<(usize, Guess)> = setting
+    let jobs: Vec<(usize, CandidateEffect)> = setting
         .effects
         .iter()
         .enumerate()
         .flat_map(|(index, &effect)| {
             shapes(setting, effect)
                 .into_iter()
-                .map(move |shape| (index, Guess { effect, shape, sign: Sign::Any, carried: false }))
+                .map(move |shape| (index, CandidateEffect { effect, shape, sign: Sign::Any, carried: false }))
         })
         .collect();
     // Each form with what is left of it, in the order of the catalogue.
@@ -167,9 +167,9 @@ fn typical(id: &str) -> Option<&'static Typical> {
 }
 
 /// What a refit leaves of each form of `guess`.
-fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess: &Guess) -> Vec<Vec<f64>> {
+fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess: &CandidateEffect) -> Vec<Vec<f64>> {
     if guess.only_adds() {
-        let ground = Ground { track: setting.track, columns: setting.columns, only: None, slopes: true };
+        let ground = Regressors { track: setting.track, columns: setting.columns, only: None, slopes: true };
         let k = guess.amplitudes().len();
         let columns = ground.more_columns(&state.sheet, guess, &state.model);
         let sizes = typical(guess.id()).map_or(&[][..], |typical| typical.amplitudes);

@@ -1,4 +1,4 @@
-//! Knocks: what a mass does to the load cell where a drive starts, stops or turns.
+//! InertialTransient: what a mass does to the load cell where a drive starts, stops or turns.
 //!
 //! They last some tens of milliseconds, much of that where the direction is not settled: the grid of a [`crate::track`]
 //! smooths them over or does not count them. So they are looked for in the samples as recorded, in what the model leaves
@@ -34,7 +34,7 @@ const TIMES_USUAL: f64 = 8.0;
 const LEAST_M_PER_S2: f64 = 0.3;
 /// The speed of a knock changes within this time, in s: a slower one is seen by the ordinary search.
 const LONGEST_S: f64 = 0.045;
-/// Knocks that are needed.
+/// InertialTransient that are needed.
 const LEAST_KNOCKS: usize = 8;
 /// The largest mass may be passed by so much as long as its size is not all that well known.
 const PASSED: f64 = 1.5;
@@ -78,7 +78,7 @@ impl Residual {
 
 /// A mass that knocks.
 #[derive(Debug, Clone)]
-pub struct Knocks {
+pub struct InertialTransient {
     mass_kg: f64,
     mass_stderr_kg: f64,
     mount_hz: f64,
@@ -94,7 +94,7 @@ pub struct Knocks {
     speeds_m_per_s: (f64, f64),
 }
 
-impl Knocks {
+impl InertialTransient {
     /// Those in what `explained` leaves, where they matter and a mass may be named beside what it has.
     ///
     /// # Errors
@@ -490,11 +490,11 @@ mod tests {
         line
     }
 
-    fn found(pull: impl Fn(f64, f64) -> f64) -> Option<Knocks> {
+    fn found(pull: impl Fn(f64, f64) -> f64) -> Option<InertialTransient> {
         let line = line(pull);
         let knocks = line.knocks(Residual::WithSpeed);
         assert!(knocks.len() >= 40, "{}", knocks.len());
-        Knocks::fitted(&knocks, line.times_s.len(), 0.05, Residual::WithSpeed)
+        InertialTransient::fitted(&knocks, line.times_s.len(), 0.05, Residual::WithSpeed)
     }
 
     #[test]

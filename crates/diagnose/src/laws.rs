@@ -10,9 +10,9 @@ use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
 
 use crate::coordinates::Coordinates;
-use crate::hypothesis::Guess;
+use crate::hypothesis::CandidateEffect;
 use crate::nuisance::Nuisance;
-use crate::question::Question;
+use crate::problem::DiagnosisProblem;
 use crate::search::Found;
 use crate::track::Track;
 
@@ -33,7 +33,7 @@ const CLEARLY: f64 = 0.9;
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub(crate) fn better(
-    question: &Question<'_>,
+    question: &DiagnosisProblem<'_>,
     track: &Track,
     found: &Found,
     thresholds: Thresholds,
@@ -72,14 +72,14 @@ fn directed(prepared: &Prepared, thresholds: Thresholds) -> Result<Direction, Id
 }
 
 /// Mean square that what was found leaves on `track`, in N²; what replaces the friction of eq. 11 is left out.
-fn left(question: &Question<'_>, found: &Found, track: &Track) -> Option<f64> {
+fn left(question: &DiagnosisProblem<'_>, found: &Found, track: &Track) -> Option<f64> {
     let model = &found.best.state.model;
     let coordinates = Coordinates::of(track);
     let nuisance = Nuisance::of_recordings(track, question.limits.sensor_floor_n)
         .with_reversals(track, &coordinates, model)
         .with_map(track, &coordinates);
     let setting = question.setting(track, &nuisance);
-    let guesses: Vec<Guess> =
+    let guesses: Vec<CandidateEffect> =
         found.best.state.guesses.iter().filter(|guess| guess.effect.role() != Role::Slides).cloned().collect();
     let near = &found.best.state.fit.x[..question.space.free.len()];
     Some(setting.fit(guesses, near, model)?.fit.mean_square)

@@ -5,9 +5,9 @@ use pam_core::artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
 use pam_core::effects::sentence::EMPIRICAL;
 use pam_core::effects::{Sentence, Term};
 
-use crate::hypothesis::Guess;
+use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
-use crate::knocks::{self, Knocks};
+use crate::knocks::{self, InertialTransient};
 use crate::nuisance::MAP_ID;
 use crate::own;
 use crate::search::{Found, chance};
@@ -34,8 +34,8 @@ pub(crate) fn term_entry(term: &EmpiricalTerm) -> EffectEntry {
 }
 
 /// The mass behind `knocks`.
-fn knocking(knocks: &Knocks) -> NamedEffect {
-    let page = Knocks::effect().page();
+fn knocking(knocks: &InertialTransient) -> NamedEffect {
+    let page = InertialTransient::effect().page();
     NamedEffect {
         id: page.id.to_owned(),
         name: page.name.to_owned(),
@@ -68,7 +68,7 @@ pub(crate) fn named(
     uncertainty: &Uncertainty,
     correlated: f64,
     sentences: &[Option<Sentence>],
-    knocks: Option<&Knocks>,
+    knocks: Option<&InertialTransient>,
 ) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
     let (mut named, mut list) = (Vec::new(), Vec::new());
     let mut first = 0;
@@ -109,15 +109,14 @@ pub(crate) fn named(
 /// What became of every candidate of the first look.
 pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
     let base = found.whole.held_out.mean_square();
-    let mismatch = (base - found.floor_square).max(f64::MIN_POSITIVE);
-    let taken: Vec<&str> = found.best.state.guesses.iter().map(Guess::id).collect();
+    let taken: Vec<&str> = found.best.state.guesses.iter().map(CandidateEffect::id).collect();
     let rivals: Vec<&str> = (0..taken.len()).flat_map(|index| alternatives(found, index)).collect();
     found
         .first
         .iter()
         .map(|trial| {
             let id = trial.guess.id();
-            let explains = ((base - trial.held_out.mean_square()) / mismatch).clamp(0.0, 1.0);
+            let explains = (1.0 - trial.held_out.mean_square() / base.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
             let outcome = if taken.contains(&id) || (knocks && id == knocks::ID) {
                 "named".to_owned()
             } else if rivals.contains(&id) {

@@ -51,7 +51,7 @@ pub(crate) fn entry(entry: EffectEntry, sentence: &Option<Sentence>, n_shapes: u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hypothesis::{Guess, Sign};
+    use crate::hypothesis::{CandidateEffect, Sign};
     use crate::rehearsal::tests::Given;
 
     use pam_core::effects::sentence::{Curve, custom_effects};
@@ -69,7 +69,7 @@ mod tests {
         let effect = custom_effects(text).expect("effects")[0];
         let given = Given::of(&["isobaric-triangles", "multisine"], &[]);
         let setting = given.setting();
-        let guess = Guess { effect, shape: vec![0.06], sign: Sign::Any, carried: false };
+        let guess = CandidateEffect { effect, shape: vec![0.06], sign: Sign::Any, carried: false };
         let state = setting.fit(vec![guess], &given.start, &given.model).expect("a fit");
         let sentences = sentences(&setting, &state);
         let sentence = sentences[0].clone().expect("a sentence");

@@ -5,7 +5,7 @@ use pam_core::artifact::diagnosis::{Coordinate, Region};
 use crate::regions::{Place, concentrated};
 use crate::search::{Found, chance};
 use crate::state::{Setting, State};
-use crate::structure::Remainder;
+use crate::structure::ProjectedResidual;
 
 /// Where the mismatch lies: what each effect explains over its own coordinate, then what the residual says by itself.
 pub(crate) fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) -> Vec<Region> {
@@ -46,7 +46,7 @@ pub(crate) fn telling(places: Vec<Place>, known: &[Coordinate]) -> Vec<Region> {
 
 /// Coordinates over which the residual of a state is structured, the most telling first.
 pub(crate) fn structured(setting: &Setting<'_>, state: &State, found: &Found, paths: &[String]) -> Vec<Place> {
-    let remainder = Remainder::of(setting, state);
+    let remainder = ProjectedResidual::of(setting, state);
     let Some(nothing) = remainder.structure(&[]) else { return Vec::new() };
     let mut places: Vec<(f64, Place)> = Vec::new();
     for coordinate in Coordinate::ALL {

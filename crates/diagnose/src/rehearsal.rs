@@ -205,9 +205,9 @@ pub(crate) mod tests {
     use pam_identification::search_space::{Free, LATEX_RATIO, SearchSpace};
 
     use super::*;
-    use crate::hypothesis::Guess;
+    use crate::design_matrix::Regressors;
+    use crate::hypothesis::CandidateEffect;
     use crate::protocols;
-    use crate::sheet::Ground;
     use crate::state::Setting;
 
     pub(crate) fn domain() -> Domain {
@@ -278,10 +278,10 @@ pub(crate) mod tests {
             }
             track.sample();
             let mut given = Self { track, columns, space, muscle, model, start };
-            let guesses: Vec<Guess> = effects.iter().map(|(id, shape, _)| given.guess(id, shape)).collect();
+            let guesses: Vec<CandidateEffect> = effects.iter().map(|(id, shape, _)| given.guess(id, shape)).collect();
             let mut weights = given.columns.weights(&parameters).to_vec();
             weights.extend(effects.iter().flat_map(|(_, _, amplitudes)| amplitudes.iter()));
-            let sheet = Ground { track: &given.track, columns: &given.columns, only: None, slopes: true }
+            let sheet = Regressors { track: &given.track, columns: &given.columns, only: None, slopes: true }
                 .sheet(&guesses, &given.model);
             for (at, instant) in given.track.instants.iter_mut().enumerate() {
                 instant.force_n = sheet.force_n(at, &weights);
@@ -306,8 +306,8 @@ pub(crate) mod tests {
             }
         }
 
-        pub(crate) fn guess(&self, id: &str, shape: &[f64]) -> Guess {
-            Guess {
+        pub(crate) fn guess(&self, id: &str, shape: &[f64]) -> CandidateEffect {
+            CandidateEffect {
                 effect: effect(id).expect("an id"),
                 shape: shape.to_vec(),
                 sign: crate::hypothesis::Sign::Any,

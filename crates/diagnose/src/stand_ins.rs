@@ -3,10 +3,10 @@
 use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::Kind;
 
-use crate::hypothesis::Guess;
+use crate::hypothesis::CandidateEffect;
 use crate::search::{Found, Judged, Limits, judged};
 use crate::state::Setting;
-use crate::structure::{Feature, Remainder};
+use crate::structure::{Feature, ProjectedResidual};
 use crate::verdict::Sizes;
 
 /// Share of the whole mismatch that structure over one coordinate must hold before it is asked what stands in for it.
@@ -28,7 +28,7 @@ pub(crate) fn without(
 ) -> Judged {
     let mut best = best;
     loop {
-        let remainder = Remainder::of(setting, &best.state);
+        let remainder = ProjectedResidual::of(setting, &best.state);
         let Some(nothing) = remainder.structure(&[]) else { return best };
         let telling = features
             .iter()
@@ -48,7 +48,7 @@ pub(crate) fn without(
             }
             let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
             let gained = rest.held_out.mean_square() - best.held_out.mean_square();
-            let without = Remainder::of(setting, &rest.state).structure(&[feature])?.held_out.mean_square();
+            let without = ProjectedResidual::of(setting, &rest.state).structure(&[feature])?.held_out.mean_square();
             // What explains most of it stands for itself. What explains less than is left there does not, nor what a function
             // of that coordinate replaces, unless that is where the effect lives.
             let lives_there = best.state.guesses[index].effect.page().coordinate == feature.coordinate;
@@ -91,7 +91,7 @@ pub(crate) fn let_go(
     left_over: Option<Coordinate>,
 ) -> Sizes {
     let leaves_too_much = leaves_too_much(found, sizes);
-    let stands_in = |guess: &Guess| {
+    let stands_in = |guess: &CandidateEffect| {
         let effect = guess.effect;
         let misshapen = effect.is_static() && effect.is_local() && left_over == Some(effect.page().coordinate);
         leaves_too_much || sizes.most_is_left() || misshapen
@@ -115,7 +115,7 @@ mod tests {
     use crate::search::search;
 
     /// Names that are left of `guess` in `given`, where structure is left over `left_over`.
-    fn names(given: &Given, guess: Guess, left_over: Coordinate) -> Vec<&'static str> {
+    fn names(given: &Given, guess: CandidateEffect, left_over: Coordinate) -> Vec<&'static str> {
         let limits = Limits::of_test(0, 0.1);
         let plain = Setting { floor_square: 0.01, ..given.setting() };
         let mut found = search(&plain, &given.start, &given.model, &limits, &|| {}).expect("a search");
@@ -124,10 +124,10 @@ mod tests {
         let state = setting.fit_near(vec![guess], &found.best.state).expect("a fit");
         found.best = judged(&setting, state).expect("a fit of every fold");
         let every: Vec<&Feature> = found.features.iter().collect();
-        found.left = Remainder::of(&setting, &found.best.state).structure(&every);
+        found.left = ProjectedResidual::of(&setting, &found.best.state).structure(&every);
         let sizes = Sizes::of(&found, &limits);
         let_go(&setting, &mut found, &sizes, &limits, Some(left_over));
-        found.best.state.guesses.iter().map(Guess::id).collect()
+        found.best.state.guesses.iter().map(CandidateEffect::id).collect()
     }
 
     #[test]

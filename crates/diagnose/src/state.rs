@@ -6,11 +6,11 @@ use pam_core::force::columns::ForceColumns;
 use pam_core::muscle::Muscle;
 use pam_identification::search_space::SearchSpace;
 
-use crate::hypothesis::{Guess, ranges};
+use crate::design_matrix::{DesignMatrix, Regressors};
+use crate::hypothesis::{CandidateEffect, ranges};
 use crate::joint::{HeldOut, Joint, JointFit};
 use crate::normal::{Extended, Normal};
 use crate::nuisance::Nuisance;
-use crate::sheet::{Ground, Sheet};
 use crate::track::Track;
 
 /// Rounds in which what slack leaves of the force and the fit settle with one another, at most.
@@ -24,7 +24,7 @@ const SLOPE_MOVED: f64 = 0.1;
 const LONGEST_BEFORE: f64 = 10.0;
 
 /// Range of what went before a recording, for the largest amplitude of `guess`.
-fn before(guess: &Guess) -> (f64, f64) {
+fn before(guess: &CandidateEffect) -> (f64, f64) {
     let largest = guess.amplitudes().iter().map(|amplitude| amplitude.range.1).fold(0.0, f64::max);
     (-LONGEST_BEFORE * largest, LONGEST_BEFORE * largest)
 }
@@ -58,9 +58,9 @@ pub struct Setting<'a> {
 #[derive(Debug, Clone)]
 pub struct State {
     /// Effects with their shapes.
-    pub guesses: Vec<Guess>,
+    pub guesses: Vec<CandidateEffect>,
     /// Moments and columns.
-    pub sheet: Sheet,
+    pub sheet: DesignMatrix,
     /// Normal equations.
     pub normal: Normal,
     /// Base and amplitudes.
@@ -77,7 +77,7 @@ impl State {
     /// The effects with their values, as a model evaluates them.
     pub fn terms(&self) -> Vec<Term> {
         let mut values = self.fit.amplitudes.iter();
-        let term = |guess: &Guess| Term {
+        let term = |guess: &CandidateEffect| Term {
             effect: guess.effect,
             shape: guess.shape.clone(),
             amplitudes: guess
@@ -127,7 +127,7 @@ impl Read {
     fn move_to(
         &mut self,
         memory: &mut dyn Memory,
-        sheet: &Sheet,
+        sheet: &DesignMatrix,
         weights: &[f64],
         nuisance_n: &[f64],
         counted: &[bool],
@@ -146,7 +146,7 @@ impl Read {
     }
 
     /// Columns and forces of which the cell reads that much.
-    fn linear(&self, sheet: &Sheet, force_n: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    fn linear(&self, sheet: &DesignMatrix, force_n: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let measured = force_n.iter().zip(&self.offsets_n).map(|(force_n, offset_n)| force_n - offset_n).collect();
         (self.scaled(sheet.columns.clone(), sheet.width), measured)
     }
@@ -181,8 +181,8 @@ impl<'a> Setting<'a> {
         self.only.unwrap_or(&self.track.counted)
     }
 
-    pub(crate) fn ground(&self) -> Ground<'_> {
-        Ground { track: self.track, columns: self.columns, only: self.only, slopes: self.goes_on }
+    pub(crate) fn ground(&self) -> Regressors<'_> {
+        Regressors { track: self.track, columns: self.columns, only: self.only, slopes: self.goes_on }
     }
 
     fn joint<'b>(&'b self, ranges: &'b [(f64, f64)]) -> Joint<'b> {
@@ -195,12 +195,12 @@ impl<'a> Setting<'a> {
 
     /// Fits `guesses` and the base; `near` is where the search starts and `model` what effects take of the base. None where
     /// the rows do not determine a fit.
-    pub fn fit(&self, guesses: Vec<Guess>, near: &[f64], model: &ForceModel) -> Option<State> {
+    pub fn fit(&self, guesses: Vec<CandidateEffect>, near: &[f64], model: &ForceModel) -> Option<State> {
         self.fit_from(guesses, near, model, None)
     }
 
     /// Fits `guesses` and the base, starting from `state`.
-    pub fn fit_near(&self, guesses: Vec<Guess>, state: &State) -> Option<State> {
+    pub fn fit_near(&self, guesses: Vec<CandidateEffect>, state: &State) -> Option<State> {
         let near = &state.fit.x[..self.space.free.len()];
         self.fit_from(guesses, near, &state.model, state.hangs_slack().then_some(&state.read))
     }
@@ -212,7 +212,13 @@ impl<'a> Setting<'a> {
         self.fit_near(others, state)
     }
 
-    fn fit_from(&self, guesses: Vec<Guess>, near: &[f64], model: &ForceModel, was: Option<&Read>) -> Option<State> {
+    fn fit_from(
+        &self,
+        guesses: Vec<CandidateEffect>,
+        near: &[f64],
+        model: &ForceModel,
+        was: Option<&Read>,
+    ) -> Option<State> {
         let sheet = self.ground().sheet(&guesses, model);
         let limits = ranges(&guesses);
         let force_n: Vec<f64> = self.track.instants.iter().map(|instant| instant.force_n).collect();
@@ -270,13 +276,13 @@ impl<'a> Setting<'a> {
     }
 
     /// Joint fit of `state` and one more guess that only adds.
-    pub fn fit_more(&self, state: &State, guess: &Guess) -> Option<JointFit> {
+    pub fn fit_more(&self, state: &State, guess: &CandidateEffect) -> Option<JointFit> {
         let (rows, limits) = self.more(state, guess);
         self.joint(&limits).fit_all(&self.extended(state, &rows, guess), &state.fit.x)
     }
 
     /// Joint fit of `state` and one more guess that only adds, and its mean squares over held-out blocks.
-    pub fn weigh_more(&self, state: &State, guess: &Guess) -> Option<(JointFit, HeldOut)> {
+    pub fn weigh_more(&self, state: &State, guess: &CandidateEffect) -> Option<(JointFit, HeldOut)> {
         let (rows, limits) = self.more(state, guess);
         let rows = self.extended(state, &rows, guess);
         let joint = self.joint(&limits);
@@ -286,7 +292,7 @@ impl<'a> Setting<'a> {
 
     /// Mean squares of `state` over held-out blocks with what `guess` leaves of what went before every recording, but without
     /// the guess itself.
-    pub fn weigh_beginnings(&self, state: &State, guess: &Guess) -> Option<HeldOut> {
+    pub fn weigh_beginnings(&self, state: &State, guess: &CandidateEffect) -> Option<HeldOut> {
         let beginnings = self.beginnings(state, guess);
         let mut limits = ranges(&state.guesses);
         limits.extend(beginnings.iter().map(|_| before(guess)));
@@ -295,14 +301,14 @@ impl<'a> Setting<'a> {
         self.joint(&limits).hold_out(&rows, &state.fit.x, &self.track.fold_of_block)
     }
 
-    fn extended<'b>(&self, state: &'b State, rows: &[f64], guess: &Guess) -> Extended<'b> {
+    fn extended<'b>(&self, state: &'b State, rows: &[f64], guess: &CandidateEffect) -> Extended<'b> {
         let width = rows.len() / self.track.n();
         state.normal.extend(rows, width, guess.amplitudes().len(), self.nuisance, &state.read.slopes)
     }
 
     /// Columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes; where it is carried,
     /// what it begins with in every recording stands behind them.
-    fn more(&self, state: &State, guess: &Guess) -> (Vec<f64>, Vec<(f64, f64)>) {
+    fn more(&self, state: &State, guess: &CandidateEffect) -> (Vec<f64>, Vec<(f64, f64)>) {
         let rows = self.ground().more_columns(&state.sheet, guess, &state.model);
         let mut limits = ranges(&state.guesses);
         limits.extend(guess.ranges());
@@ -327,12 +333,12 @@ impl<'a> Setting<'a> {
 
     /// What `guess` leaves in every recording of what went before it: a column for each recording and amplitude, in which
     /// what went before was the same recording.
-    pub(crate) fn beginnings(&self, state: &State, guess: &Guess) -> Vec<Vec<f64>> {
+    pub(crate) fn beginnings(&self, state: &State, guess: &CandidateEffect) -> Vec<Vec<f64>> {
         self.ground().beginnings(&state.sheet, guess, &state.model)
     }
 
     /// `nuisance` with what `guess` leaves in every recording of what went before it.
-    pub(crate) fn begun(&self, nuisance: &Nuisance, state: &State, guess: &Guess) -> Nuisance {
+    pub(crate) fn begun(&self, nuisance: &Nuisance, state: &State, guess: &CandidateEffect) -> Nuisance {
         nuisance.with_beginnings(self.beginnings(state, guess), &self.track.counted)
     }
 

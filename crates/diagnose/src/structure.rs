@@ -94,7 +94,7 @@ fn over(values: &[f64], knots: Vec<f64>, coordinate: Coordinate, direction: Opti
 
 /// The force that orders the residual of `state` best: as measured, or as it should have been measured. What a load cell does
 /// wrong over part of its range is a function of that, while its reading may pass the same value twice.
-pub fn telling_force_n(setting: &Setting<'_>, state: &State, remainder: &Remainder) -> Vec<f64> {
+pub fn telling_force_n(setting: &Setting<'_>, state: &State, remainder: &ProjectedResidual) -> Vec<f64> {
     let measured_n: Vec<f64> = setting.track.instants.iter().map(|instant| instant.force_n).collect();
     let due_n: Vec<f64> =
         measured_n.iter().zip(setting.residuals_n(state)).map(|(force_n, residual_n)| force_n - residual_n).collect();
@@ -202,7 +202,7 @@ struct Products {
 
 /// The residual of a state in the tangent space of its fit, ready for features.
 #[derive(Debug)]
-pub struct Remainder {
+pub struct ProjectedResidual {
     /// Orthonormal directions that the parameters can move the model in, and the residual: `n_directions + 1` per row.
     pub(crate) rows: Vec<f64>,
     pub(crate) n_directions: usize,
@@ -215,7 +215,7 @@ pub struct Remainder {
     floor_square: f64,
 }
 
-impl Remainder {
+impl ProjectedResidual {
     /// Of `state`.
     pub fn of(setting: &Setting<'_>, state: &State) -> Self {
         let limits = ranges(&state.guesses);
@@ -420,7 +420,7 @@ mod tests {
         // One parameter, a constant, which has taken the mean.
         let rows = values.iter().flat_map(|value| [1.0 / (N as f64).sqrt(), bump(*value) - mean]).collect();
         let each = N / BLOCKS;
-        let remainder = Remainder {
+        let remainder = ProjectedResidual {
             rows,
             n_directions: 1,
             ridges: vec![1e-6],

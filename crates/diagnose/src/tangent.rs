@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use pam_core::force::columns::N_COLUMNS;
 use pam_identification::problem::ForceProblem;
 
-use crate::sheet::Sheet;
+use crate::design_matrix::DesignMatrix;
 use crate::state::{Setting, State};
 
 /// Orthonormal directions over weighted rows.
@@ -25,7 +25,12 @@ const LEAST_LEFT: f64 = 1e-9;
 impl Tangent {
     /// Of the base parameters of `state` over groups of rows of `sheet`, each with the weight beside it. A parameter that presses
     /// against its range counts as free: with another effect in the model it may let go.
-    pub(crate) fn of(setting: &Setting<'_>, state: &State, sheet: &Sheet, groups: Vec<(Range<usize>, f64)>) -> Self {
+    pub(crate) fn of(
+        setting: &Setting<'_>,
+        state: &State,
+        sheet: &DesignMatrix,
+        groups: Vec<(Range<usize>, f64)>,
+    ) -> Self {
         let total: f64 = groups.iter().map(|(_, weight)| weight).sum();
         let roots: Vec<f64> = groups.iter().map(|(_, weight)| (weight / total.max(f64::MIN_POSITIVE)).sqrt()).collect();
         let groups = groups.into_iter().map(|(group, _)| group).collect();

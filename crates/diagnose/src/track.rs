@@ -12,7 +12,7 @@ use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
 use rayon::prelude::*;
 
-use crate::knocks::Knocks;
+use crate::knocks::InertialTransient;
 
 /// Time between instants, in s, as long as there are fewer than [`MOST_INSTANTS`].
 const PERIOD_S: f64 = 0.02;
@@ -141,7 +141,7 @@ impl Track {
 
     /// The same, but what `knocks` touch does not count, and the pull of their mass is taken off the rest.
     #[must_use]
-    pub fn without(mut self, knocks: &Knocks) -> Self {
+    pub fn without(mut self, knocks: &InertialTransient) -> Self {
         for range in &self.recordings {
             let mut mount = knocks.mount();
             for instant in &mut self.instants[range.clone()] {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use pam_core::effects::{Effect, Kind, Seen, Shape};
 use rayon::prelude::*;
 
-use crate::hypothesis::{Guess, n_amplitudes};
+use crate::hypothesis::{CandidateEffect, n_amplitudes};
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
 use crate::steps;
@@ -14,7 +14,7 @@ use crate::steps;
 #[derive(Debug, Clone)]
 pub struct Trial {
     /// The candidate.
-    pub guess: Guess,
+    pub guess: CandidateEffect,
     /// Mean square of the joint fit over the sampled instants, in N².
     pub mean_square: f64,
     /// Mean squares over held-out blocks.
@@ -74,7 +74,7 @@ pub fn among(
         .copied()
         .filter(|&effect| takes(effect) && state.guesses.iter().all(|guess| guess.id() != effect.page().id))
         .collect();
-    let jobs: Vec<(usize, Guess)> = candidates
+    let jobs: Vec<(usize, CandidateEffect)> = candidates
         .iter()
         .enumerate()
         .flat_map(|(index, &effect)| {
@@ -83,11 +83,12 @@ pub fn among(
                 Some(shape) => vec![shape.clone()],
                 None => effect.first_shapes(seen),
             };
-            let (signs, beginnings) = (Guess::signs(effect), Guess::beginnings(effect));
+            let (signs, beginnings) = (CandidateEffect::signs(effect), CandidateEffect::beginnings(effect));
             shapes.into_iter().flat_map(move |shape| {
                 signs.iter().flat_map(move |&sign| {
                     let shape = shape.clone();
-                    let guess = move |&carried| (index, Guess { effect, shape: shape.clone(), sign, carried });
+                    let guess =
+                        move |&carried| (index, CandidateEffect { effect, shape: shape.clone(), sign, carried });
                     beginnings.iter().map(guess)
                 })
             })
@@ -109,7 +110,7 @@ pub fn among(
         })
         .collect();
     // Of every beginning the best: the freer one is always nearer to what it was fitted to.
-    let mut best: Vec<Option<(f64, &Guess)>> = vec![None; 2 * candidates.len()];
+    let mut best: Vec<Option<(f64, &CandidateEffect)>> = vec![None; 2 * candidates.len()];
     for ((index, guess), cost) in jobs.iter().zip(costs) {
         let best = &mut best[2 * index + usize::from(guess.carried)];
         if let Some(cost) = cost
@@ -118,9 +119,10 @@ pub fn among(
             *best = Some((cost, guess));
         }
     }
-    let mut found: Vec<(f64, Guess)> = best.into_iter().flatten().map(|(cost, guess)| (cost, guess.clone())).collect();
+    let mut found: Vec<(f64, CandidateEffect)> =
+        best.into_iter().flatten().map(|(cost, guess)| (cost, guess.clone())).collect();
     found.sort_by(|left, right| left.0.total_cmp(&right.0));
-    let refined: Vec<(f64, Guess)> = found
+    let refined: Vec<(f64, CandidateEffect)> = found
         .par_iter()
         .enumerate()
         .map(
@@ -164,7 +166,7 @@ pub fn among(
 
 /// Mean squares over held-out blocks of `state` with one more guess, and whether an amplitude of that presses against the
 /// largest that physics has for it: the data want something else of that shape.
-fn weigh(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<(HeldOut, bool)> {
+fn weigh(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> Option<(HeldOut, bool)> {
     if !guess.only_adds() {
         return Some((setting.hold_out(&with(setting, state, guess)?)?, false));
     }
@@ -180,7 +182,7 @@ fn weigh(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<(HeldOut
 }
 
 /// Mean square of the joint fit with one more guess.
-pub fn mean_square(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<f64> {
+pub fn mean_square(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> Option<f64> {
     if guess.only_adds() {
         setting.fit_more(state, guess).map(|fit| fit.mean_square)
     } else {
@@ -189,7 +191,7 @@ pub fn mean_square(setting: &Setting<'_>, state: &State, guess: &Guess) -> Optio
 }
 
 /// `state` with one more guess.
-pub fn with(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<State> {
+pub fn with(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> Option<State> {
     let mut guesses = state.guesses.clone();
     guesses.push(guess.clone());
     setting.fit_near(guesses, state)
@@ -197,7 +199,13 @@ pub fn with(setting: &Setting<'_>, state: &State, guess: &Guess) -> Option<State
 
 /// Better values of the shape parameters of `guess` on top of `state`, one after the other, `sweeps` times; and the mean
 /// square there.
-pub fn refine(setting: &Setting<'_>, state: &State, guess: &Guess, cost: f64, sweeps: usize) -> (f64, Guess) {
+pub fn refine(
+    setting: &Setting<'_>,
+    state: &State,
+    guess: &CandidateEffect,
+    cost: f64,
+    sweeps: usize,
+) -> (f64, CandidateEffect) {
     let mut best = (cost, guess.clone());
     if guess.effect.kind() == Kind::Event {
         return best;

@@ -2,7 +2,7 @@
 
 use pam_core::artifact::diagnosis::Verdict;
 
-use crate::knocks::Knocks;
+use crate::knocks::InertialTransient;
 use crate::search::{Found, Limits, Taken};
 
 /// Sizes that the verdict rests on, root mean square over held-out blocks, in N.
@@ -67,7 +67,7 @@ impl Sizes {
     }
 
     /// The same where `knocks` were explained besides.
-    pub fn with(self, knocks: &Knocks) -> Self {
+    pub fn with(self, knocks: &InertialTransient) -> Self {
         Self { mismatch_n: self.mismatch_n.hypot(knocks.all_rows_n), ..self }
     }
 

@@ -11,9 +11,9 @@ use pam_core::shift::shifted;
 
 use crate::coordinates::Coordinates;
 use crate::error::DiagnoseError;
-use crate::hypothesis::Guess;
+use crate::hypothesis::CandidateEffect;
 use crate::nuisance::Nuisance;
-use crate::question::Question;
+use crate::problem::DiagnosisProblem;
 use crate::search::Found;
 use crate::state::{Setting, State};
 use crate::track::Track;
@@ -41,9 +41,9 @@ const MOST_AGAIN: usize = 2;
 /// the strongest is none, the next best may be the one: it is taken in its place where `heldout` surely shows that.
 ///
 /// # Errors
-/// As [`Question::search_without`].
+/// As [`DiagnosisProblem::search_without`].
 pub(crate) fn confirmed(
-    question: &Question<'_>,
+    question: &DiagnosisProblem<'_>,
     track: &Track,
     found: Found,
     heldout: &Track,
@@ -69,7 +69,7 @@ pub(crate) fn confirmed(
 
 /// `found` without what was denied, and the id of the one with the strongest evidence if that was.
 fn without_denied(
-    question: &Question<'_>,
+    question: &DiagnosisProblem<'_>,
     track: &Track,
     mut found: Found,
     heldout: &Track,
@@ -168,7 +168,9 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
 /// With how much of its size each effect of `found` is there on `held`; none where nothing can be said.
 fn shares(held: &Setting<'_>, found: &Found) -> Vec<Option<Share>> {
     let state = &found.best.state;
-    let of = |(index, guess): (usize, &Guess)| is_judged(guess.effect).then(|| share(held, state, index)).flatten();
+    let of = |(index, guess): (usize, &CandidateEffect)| {
+        is_judged(guess.effect).then(|| share(held, state, index)).flatten()
+    };
     state.guesses.iter().enumerate().map(of).collect()
 }
 

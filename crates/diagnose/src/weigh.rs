@@ -1,7 +1,7 @@
 //! What a diagnosis is worth at the full rate of the recordings: the verdict in words and numbers, and what held-out recordings say of
 //! it.
 
-use pam_core::artifact::diagnosis::Verdict;
+use pam_core::artifact::diagnosis::{EmpiricalGain, Verdict};
 
 use crate::artifact::{Agreement, together};
 use crate::diagnose::Diagnosis;
@@ -29,9 +29,14 @@ impl Diagnosis {
             (self.regions, self.unexplained) = (Vec::new(), Vec::new());
         }
         let numbers = self.numbers(agreement);
-        self.unexplained_share = numbers.share_left();
-        self.statement = words::statement(self.verdict, &self.effects, &numbers, &self.regions, &self.unexplained)
-            + &self.empirical.as_ref().map_or(String::new(), discover::statement);
+        self.unexplained_share = numbers.share_unexplained(&self.effects);
+        self.statement = words::statement(self.verdict, &self.effects, &numbers, &self.regions, &self.unexplained);
+        if let Some(empirical) = &mut self.empirical {
+            let held = agreement.holdout_without_terms.as_ref().zip(agreement.holdout.together.as_ref());
+            empirical.holdout =
+                held.map(|(without, with)| EmpiricalGain { rmse_without_n: without.rmse_n, rmse_with_n: with.rmse_n });
+            self.statement += &discover::statement(empirical, !self.effects.is_empty(), numbers.with_map);
+        }
         let left_n = together(&agreement.estimation).rmse_all_n;
         let sensors_n = self.sizes.sensors_n;
         if self.verdict == Verdict::Explained && left_n > EXPLAINED_WITHIN * sensors_n {
@@ -68,6 +73,11 @@ impl Diagnosis {
             && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)
     }
 
+    /// Whether the augmented model has a smooth static map.
+    pub(crate) fn has_map(&self) -> bool {
+        self.entries.iter().any(|entry| entry.id == MAP_ID)
+    }
+
     /// What the verdict says in numbers.
     fn numbers(&self, agreement: &Agreement) -> words::Numbers {
         words::Numbers {
@@ -76,8 +86,9 @@ impl Diagnosis {
             floor_n: agreement.noise_floor_n,
             matters_n: self.sizes.matters_n,
             static_n: self.sizes.static_n,
-            held_n: agreement.base_holdout.together.as_ref().map(|held| held.rmse_all_n),
-            with_map: self.entries.iter().any(|entry| entry.id == MAP_ID),
+            held_n: agreement.base_holdout.together.as_ref().map(|held| held.rmse_n),
+            with_map: self.has_map(),
+            n_terms: self.empirical.as_ref().map_or(0, |empirical| empirical.terms.len()),
         }
     }
 }

@@ -6,8 +6,8 @@ use pam_core::effects::effect;
 use crate::artifact::together;
 use crate::given::Given;
 
-/// What the verdict says in numbers: RMSE over the counted samples of the estimation recordings at their own rate, in N. Tables and
-/// report show the same.
+/// The numbers that a statement gives: RMSE over counted samples at the rate of the recordings, in N, as in the tables and in the
+/// report.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Numbers {
     /// Base model, refitted: the mismatch.
@@ -20,10 +20,12 @@ pub(crate) struct Numbers {
     pub(crate) matters_n: f64,
     /// What a smooth static map takes of the mismatch, where eq. 11 accounts for less in any muscle.
     pub(crate) static_n: Option<f64>,
-    /// What the base model leaves of held-out recordings, over all samples.
+    /// What the base model leaves of held-out recordings.
     pub(crate) held_n: Option<f64>,
     /// Whether a smooth static map stands beside the effects.
     pub(crate) with_map: bool,
+    /// Empirical terms beside the effects.
+    pub(crate) n_terms: usize,
 }
 
 impl Numbers {
@@ -34,9 +36,21 @@ impl Numbers {
         if before > 0.0 { (excess(self.after_n) / before).clamp(0.0, 1.0) } else { 0.0 }
     }
 
+    /// The share that no effect explains: an empirical term describes, and explains nothing.
+    pub(crate) fn share_unexplained(&self, effects: &[NamedEffect]) -> f64 {
+        let alone = Self { after_n: self.before_n, ..*self };
+        if effects.is_empty() { alone.share_left() } else { self.share_left() }
+    }
+
     /// What the model with `effects` leaves of the mismatch.
     fn gain(&self, effects: &[NamedEffect]) -> String {
-        let map = if self.with_map { " and a smooth static map" } else { "" };
+        let term = if self.n_terms == 1 { "an empirical term" } else { "empirical terms" };
+        let map = match (self.with_map, self.n_terms) {
+            (false, 0) => String::new(),
+            (true, 0) => " and a smooth static map".to_owned(),
+            (false, _) => format!(" and {term}"),
+            (true, _) => format!(", a smooth static map and {term}"),
+        };
         if self.after_n > self.before_n {
             // A fit lets such a memory go on from recording to recording.
             let outlasts = |named: &NamedEffect| effect(&named.id).is_some_and(|effect| effect.outlasts());
@@ -69,14 +83,19 @@ pub(crate) fn statement(
     match verdict {
         Verdict::Consistent => {
             let matters_n = numbers.matters_n;
-            let held = match numbers.held_n {
-                Some(held_n) if numbers.before_n > numbers.floor_n.hypot(matters_n) => {
-                    format!("{held_n:.2} N of held-out recordings")
+            let left_much = numbers.before_n > numbers.floor_n.hypot(matters_n);
+            let because = match numbers.held_n {
+                _ if left_much && numbers.with_map && numbers.after_n < numbers.before_n => {
+                    format!(
+                        "; a smooth static map, which the form of eq. 11 leaves of any muscle, lowers that to {:.2} N",
+                        numbers.after_n
+                    )
                 }
-                _ => format!("{matters_n:.2} N beyond that would matter"),
+                Some(held_n) if left_much => format!(", and {held_n:.2} N of held-out recordings"),
+                _ => format!(", and {matters_n:.2} N beyond that would matter"),
             };
             format!(
-                "Nothing is missing that matters: refitted, the model leaves an RMSE of {:.2} N, where noise leaves {:.2} N, and {held}.",
+                "Nothing is missing that matters: refitted, the model leaves an RMSE of {:.2} N, where noise leaves {:.2} N{because}.",
                 numbers.before_n, numbers.floor_n
             )
         }
@@ -196,8 +215,12 @@ mod tests {
             static_n: None,
             held_n: None,
             with_map: false,
+            n_terms: 0,
         };
         assert!(numbers(1.5).gain(&[]).starts_with("with that the RMSE falls from 2.00 to 1.50 N, 58 % of the excess"));
         assert_eq!(numbers(2.5).gain(&[]), "with that the RMSE rises from 2.00 to 2.50 N");
+        let beside = Numbers { with_map: true, n_terms: 2, ..numbers(1.5) };
+        assert!(beside.gain(&[]).starts_with("with that, a smooth static map and empirical terms the RMSE falls"));
+        assert_eq!(beside.share_unexplained(&[]), 1.0);
     }
 }

@@ -1,4 +1,4 @@
-//! Many lifts: how much of the tracking survives what nobody knows exactly.
+//! Many lifts: how much of the tracking survives uncertain load, friction, valve and geometry.
 //!
 //! Every trial draws load, friction, valve, geometry, noise and the parameters of the force model, and lifts
 //! with the same controller. A trial has its own stream of random numbers, so that its result depends neither

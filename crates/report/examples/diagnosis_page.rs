@@ -246,6 +246,7 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
         regions: Vec::new(),
         effects: Vec::new(),
         empirical: None,
+        static_map: false,
         candidates: Vec::new(),
         unknown: PageUnknown::default(),
         next_experiment: None,

@@ -118,7 +118,7 @@ pub fn change_page(page: &ChangePage) -> Result<String, FigureError> {
 }
 
 fn compared(rows: &[PageCompared]) -> String {
-    let mut cells = Table::new(["", "then", "now", "difference in standard errors"]);
+    let mut cells = Table::new(["", "then", "now", "standard errors"]);
     for row in rows {
         cells.row([row.name.clone(), row.then.clone(), row.now.clone(), row.standard_errors.clone()]);
     }

@@ -26,7 +26,7 @@ pub struct EnvelopeFigure {
 /// Names and colors of the three errors.
 const ERRORS: [(&str, Color); 3] = [("MAX", palette::VERMILION), ("MAE", palette::GREEN), ("RMSE", palette::PURPLE)];
 
-/// Draws the figure, as an SVG document of 1500 × 520 pixels.
+/// Draws the figure, as an SVG document of 1000 × 860 pixels.
 ///
 /// # Errors
 /// [`FigureError::NothingToDraw`] without a trial.
@@ -34,13 +34,13 @@ pub fn envelope_figure(figure: &EnvelopeFigure) -> Result<String, FigureError> {
     if figure.envelope.is_empty() || figure.errors_rad.iter().any(Vec::is_empty) {
         return Err(FigureError::NothingToDraw);
     }
-    Canvas::document(1500, 520, &figure.title, |canvas, sheet| {
+    Canvas::document(1000, 860, &figure.title, |canvas, sheet| {
         let page = sheet.inset(14.0, 0.0, 14.0, 8.0);
         canvas.bold(&figure.title, (page.left + 14.0, 26.0), Anchor::Start, 19.0, palette::INK);
         canvas.text(&figure.subtitle, (page.left + 14.0, 50.0), Anchor::Start, 13.5, palette::GRAY);
-        let [left, right] = page.inset(0.0, 68.0, 0.0, 0.0).columns([1.25, 1.0], 18.0);
-        draw_envelope(canvas, left, &figure.envelope);
-        draw_distribution(canvas, right, figure);
+        let [upper, lower] = page.inset(0.0, 68.0, 0.0, 0.0).rows([1.0; 2], 12.0);
+        draw_envelope(canvas, upper, &figure.envelope);
+        draw_distribution(canvas, lower, figure);
     })
 }
 
@@ -85,7 +85,7 @@ fn draw_distribution(canvas: &mut Canvas<'_>, cell: Rect, figure: &EnvelopeFigur
     panel.draw_frame(canvas);
     panel.level(canvas, 95.0, palette::SILVER, 1.2);
     let (left, height) = panel.at(panel.x.from, 95.0);
-    canvas.text("95 %", (left + 6.0, height + 9.0), Anchor::Start, 11.0, palette::GRAY);
+    canvas.text("95 %", (left + 6.0, height + 9.0), Anchor::Start, 12.5, palette::GRAY);
     for (index, (errors, (name, color))) in sorted.iter().zip(ERRORS).enumerate() {
         let total = figure.errors_rad[index].len();
         // As many points as there are pixels, however many trials.
@@ -98,7 +98,7 @@ fn draw_distribution(canvas: &mut Canvas<'_>, cell: Rect, figure: &EnvelopeFigur
         let (x, _) = panel.at(1e3 * paper_rad[index], 0.0);
         canvas.dashes((x, panel.frame.top), (x, panel.frame.bottom), color.faded(0.8), 1.2, 4.0);
         let at = (x - 8.0, panel.frame.bottom - 14.0);
-        canvas.upward(&format!("paper's {name}"), at, Anchor::Start, 11.0, color.toward(palette::INK, 0.3));
+        canvas.upward(&format!("paper's {name}"), at, Anchor::Start, 12.5, color.toward(palette::INK, 0.3));
     }
     let (y, _) = title(canvas, cell, "b", "Errors of whole lifts");
     let keys = ERRORS.map(|(name, color)| Key::new(name, Mark::Line(2.0), color));

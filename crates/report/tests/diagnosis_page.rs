@@ -125,6 +125,7 @@ fn full() -> DiagnosisPage {
             separating_test: text(),
         }],
         empirical: None,
+        static_map: false,
         candidates: vec![PageCandidate { id: text(), name: text(), evidence, explains: 0.4, outcome: text() }],
         unknown: PageUnknown {
             regions: vec![region(PageCoordinate::Speed)],
@@ -179,6 +180,7 @@ fn bare(verdict: PageVerdict, recordings: Vec<PageRecording>) -> DiagnosisPage {
         regions: Vec::new(),
         effects: Vec::new(),
         empirical: None,
+        static_map: false,
         candidates: Vec::new(),
         unknown: PageUnknown::default(),
         next_experiment: None,

@@ -46,6 +46,10 @@ pub struct DiagnosisArtifact {
     /// Empirical terms of unmodelled structure; none where nothing was found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub empirical: Option<Empirical>,
+    /// Whether the augmented model has a smooth static map over pressure and contraction, which every figure of `fit` after the
+    /// effects includes.
+    #[serde(default)]
+    pub static_map: bool,
     /// Share of the excess over the noise floor (mean squares) that the effects leave unexplained, in [0, 1].
     pub unexplained_share: f64,
     /// Where structure is left that no effect explains; empty where none is.
@@ -314,7 +318,7 @@ pub struct Candidate {
     pub id: String,
     /// Evidence alone, against the base model.
     pub evidence: Evidence,
-    /// Share of the excess over the noise floor that it explains alone, in [0, 1].
+    /// Share of the mean square over blocks left out of the fit, noise included, that it takes away alone, in [0, 1].
     pub explains: f64,
     /// What became of it, in words.
     pub outcome: String,

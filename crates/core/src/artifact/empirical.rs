@@ -15,7 +15,8 @@ pub struct Empirical {
     pub terms: Vec<EmpiricalTerm>,
     /// Over held-out blocks of the estimation recordings.
     pub blocks: EmpiricalGain,
-    /// Along held-out recordings, over all samples on the grid of the diagnosis; none where none were held out.
+    /// Over the counted samples of held-out recordings; with the terms it is `rmse_after_n` of `fit.holdout`. None where nothing
+    /// was held out.
     pub holdout: Option<EmpiricalGain>,
 }
 
@@ -23,7 +24,7 @@ pub struct Empirical {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EmpiricalGain {
-    /// Base, static map and named effects, in N.
+    /// Base, static map and named effects, in N; along held-out recordings the refitted base alone where no effect is named.
     pub rmse_without_n: f64,
     /// The same and the terms, in N.
     pub rmse_with_n: f64,

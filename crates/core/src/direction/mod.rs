@@ -8,7 +8,7 @@
 //! samples, as little as those of a sensor that is out of its range.
 //!
 //! A turn is the vertex of the parabola or the corner of the two lines that describe the length around it, whichever leaves
-//! less: the play alone notices it a threshold late. Behind it friction keeps its sign over some tens of micrometers
+//! less: the play alone notices it a threshold late. After it friction keeps its sign over some tens of micrometers
 //! ([`Thresholds::held_m`], the play of joints and strands) and goes to the other one within some more
 //! ([`Thresholds::turn_m`], their give): what the recordings say.
 //!

@@ -125,11 +125,11 @@ pub(super) fn states_of(
 /// sign before the push, which the length says up to a turn. A turn beyond `until` has nothing to do with it.
 fn keep(from: usize, until: usize, before: i8, marks: &mut [i8]) {
     let last = marks[from - 1].signum();
-    let behind = &mut marks[from..];
-    let turn = behind.iter().position(|mark| mark.signum() != before).unwrap_or(behind.len());
+    let after = &mut marks[from..];
+    let turn = after.iter().position(|mark| mark.signum() != before).unwrap_or(after.len());
     let turn = if from + turn < until { turn } else { 0 };
-    behind[..turn].fill(last);
-    behind[turn..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
+    after[..turn].fill(last);
+    after[turn..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
 }
 
 /// Deviation that is left in the path that friction turns over on, in m, where the window allows: less than strands give.
@@ -361,9 +361,9 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
             let within = |row: &usize| (smooth[*row] - smooth[turn]).abs() < 2.0 * NOISE * threshold;
             let most = 3 * took + half;
             let before = (last_turn..turn).rev().take_while(within).take(most).count();
-            let behind = (turn..index).take_while(within).take(most).count();
+            let after = (turn..index).take_while(within).take(most).count();
             doubtful = turn.saturating_sub(found.doubt.max(before)).max(last_turn);
-            settled_from = turn + found.doubt.max(behind);
+            settled_from = turn + found.doubt.max(after);
         }
         last_turn = turn.min(index);
         if sign == 0 {

@@ -74,8 +74,8 @@ fn corner(values: &[f64], stride: usize, sign: f64) -> Option<(f64, usize, f64)>
     };
     let corners = (n / 4..=n - 1 - n / 4).step_by(stride).filter_map(lines);
     let (left, corner, weights) = corners.min_by(|one, other| one.0.total_cmp(&other.0))?;
-    let (before, behind) = (sign * weights[1], sign * weights[2]);
-    (behind > 0.0 && before < 0.3 * behind).then_some((left, corner, behind - before))
+    let (before, after) = (sign * weights[1], sign * weights[2]);
+    (after > 0.0 && before < 0.3 * after).then_some((left, corner, after - before))
 }
 
 /// Least squares of every `stride`-th of `values` less `origin`: squares that are left, and weights.

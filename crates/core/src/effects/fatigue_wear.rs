@@ -148,7 +148,7 @@ mod tests {
         assert!(cycled(&mut *memory, 1.4e-4, 100_000).abs() < 1e-12);
         let mut memory = FatigueWear.start(&nominal(), &[0.5]);
         let before_n = cycled(&mut *memory, 0.05, 100);
-        let behind_gap = Moment { slide_m: 0.0, ..still() };
-        assert!((pull(&mut *memory, &behind_gap, &base())[0] - before_n).abs() < 1e-12);
+        let after_gap = Moment { slide_m: 0.0, ..still() };
+        assert!((pull(&mut *memory, &after_gap, &base())[0] - before_n).abs() < 1e-12);
     }
 }

@@ -99,7 +99,7 @@ mod tests {
     use crate::muscle::tests::nominal;
 
     #[test]
-    fn it_acts_behind_its_instant_in_its_recording() {
+    fn it_acts_after_its_instant_in_its_recording() {
         let mut memory = ForceStep.start(&nominal(), &[2.0, 10.0]);
         let mut at = |recording, time_s| pull(&mut *memory, &Moment { recording, time_s, ..still() }, &base())[0];
         assert_eq!([at(2, 9.99), at(2, 10.0), at(2, 1e3), at(1, 20.0)], [0.0, 1.0, 1.0, 0.0]);

@@ -117,8 +117,8 @@ mod tests {
         let mut overstress = Overstress::new(0.1);
         assert_eq!(overstress.follow(&at(0.0), -60.0), [0.0; 3]);
         let before = overstress.follow(&at(0.1), -30.0);
-        let behind = overstress.follow(&Moment { step_s: 0.0, ..at(1.1) }, -30.0);
-        assert!((behind[1] / before[1] - (-1.0_f64).exp()).abs() < 1e-9);
+        let after = overstress.follow(&Moment { step_s: 0.0, ..at(1.1) }, -30.0);
+        assert!((after[1] / before[1] - (-1.0_f64).exp()).abs() < 1e-9);
         assert!(overstress.follow(&at(200.0), -30.0).iter().all(|left_n| left_n.abs() < 1e-6));
         overstress.follow(&at(200.1), -60.0);
         assert_eq!(overstress.follow(&Moment { recording: 1, ..at(300.0) }, 5.0), [0.0; 3]);

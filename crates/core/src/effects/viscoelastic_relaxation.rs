@@ -55,7 +55,7 @@ impl Memory for State {
 static PAGE: Page = Page {
     id: "viscoelastic-relaxation",
     name: "viscoelastic relaxation of the bladder",
-    summary: "Behind a change of the length the rubber pulls against the change by more than it does in the end, and \
+    summary: "After a change of the length the rubber pulls against the change by more than it does in the end, and \
               the surplus dies away over seconds to minutes. Pressure alone, at a fixed length, does not excite it.",
     equation: "F = F_base + Σ g_i (f - q_i),  τ_i dq_i/dt = f - q_i,  τ_i = τ, 10 τ, 100 τ",
     symbols: &[

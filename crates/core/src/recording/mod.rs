@@ -7,7 +7,7 @@
 //!
 //! In the order in which bytes pass: `source` opens, decompresses and hashes; `lines` cuts; `sniff` finds the
 //! separator; `lvm` passes over the header of a LabVIEW file; `opening` and `header` give the columns a meaning, with what `options` and
-//! `channels` say; `rows` reads numbers, and `date` stamps; `mat` makes columns of a MATLAB file; `clock` drops rows that contradict their neighbors; `stamps` spreads equal stamps and finds gaps; `samples` keeps.
+//! `channels` say; `rows` reads numbers, and `date` stamps; `matlab` takes columns of a MATLAB file; `clock` drops rows that contradict their neighbors; `stamps` spreads equal stamps and finds gaps; `samples` keeps.
 
 mod body;
 mod channels;
@@ -19,7 +19,7 @@ mod fields;
 mod header;
 mod lines;
 mod lvm;
-mod mat;
+mod matlab;
 mod opening;
 mod options;
 mod read;

@@ -10,7 +10,7 @@ use super::error::{Place, ReadError, ReadErrorKind};
 use super::fields::{is_blank, is_comment, strip_line_end};
 use super::lines::{LineReader, Lines, MAX_LINE_BYTES};
 use super::lvm;
-use super::mat;
+use super::matlab;
 use super::opening::{self, Comment, Opened, Seen};
 use super::options::{Calibration, ColumnMap, Columns, FixedChannel};
 use super::row_fault::RowFault;
@@ -104,19 +104,8 @@ pub(super) fn whole(kind: ReadErrorKind) -> Refusal {
 fn read(path: &Path, options: &ReadOptions, observe: &mut dyn FnMut(u64, u64)) -> Result<Recording, Refusal> {
     let mut lines = LineReader::new(ByteSource::open(path).map_err(whole)?);
     let start = lines.peek(MAX_LINE_BYTES).map_err(whole)?;
-    if let Some(kind) = mat::kind(start) {
-        let shown = path.to_string_lossy().into_owned();
-        return match kind {
-            mat::Kind::Level5(endian) => mat::read(lines, shown, endian, options, observe),
-            mat::Kind::Level4 => {
-                let remedy = "load it in MATLAB and save it with save -v7".to_owned();
-                Err(whole(ReadErrorKind::NotRead { found: "a MATLAB file of version 4", remedy }))
-            }
-            mat::Kind::Hdf5 => {
-                let remedy = format!("save it with save -v7, or {}", sniff::HDF5_AS_CSV);
-                Err(whole(ReadErrorKind::NotRead { found: "a MATLAB file of version 7.3 (HDF5)", remedy }))
-            }
-        };
+    if let Some(format) = pam_matlab::format_of(start) {
+        return matlab::read(format, lines, path.to_string_lossy().into_owned(), options, observe);
     }
     let n_mark = sniff::check_text(start).map_err(whole)?;
     let lvm = lvm::header(&start[n_mark..]).transpose().map_err(whole)?;

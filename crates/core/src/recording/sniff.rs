@@ -50,11 +50,12 @@ pub(super) const HDF5_AS_CSV: &str = "write it as CSV: python3 -c 'import h5py, 
      if isinstance(o, h5py.Dataset) and o.dtype.kind in \"fiu\" and o.size == max(o.shape or [0]) else None); \
      pandas.DataFrame(d).to_csv(sys.argv[2], index=False)' log.h5 log.csv";
 
-/// What to do about TDMS.
+/// What to do about TDMS: time is that of the waveforms, or else a channel of its own.
 const TDMS_AS_CSV: &str = "write it as CSV: python3 -c 'import nptdms, sys; \
-     d = nptdms.TdmsFile.read(sys.argv[1]).as_dataframe(time_index=True); \
+     f = nptdms.TdmsFile.read(sys.argv[1]); \
+     w = all(\"wf_increment\" in c.properties for g in f.groups() for c in g.channels()); d = f.as_dataframe(time_index=w); \
      d.columns = [c.split(chr(39))[-2] for c in d.columns]; \
-     d.rename_axis(\"time_s\").to_csv(sys.argv[2])' log.tdms log.csv";
+     d.rename_axis(\"time_s\" if w else None).to_csv(sys.argv[2], index=w)' log.tdms log.csv";
 
 /// Checks that `start` begins a text; returns the length of its byte order mark.
 pub(crate) fn check_text(start: &[u8]) -> Result<usize, ReadErrorKind> {

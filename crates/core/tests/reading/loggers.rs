@@ -126,6 +126,6 @@ fn a_file_of_channels_says_what_columns_mean() {
 #[test]
 fn formats_that_are_not_read_are_refused_with_a_line_that_converts_them() {
     let plain = ReadOptions::default();
-    assert_snapshot!(refusal(b"TDSm\x0e\0\0\0\x69\x12\0\0", &plain), @r#"log.csv: this is a TDMS file of LabVIEW, which is not read; write it as CSV: python3 -c 'import nptdms, sys; d = nptdms.TdmsFile.read(sys.argv[1]).as_dataframe(time_index=True); d.columns = [c.split(chr(39))[-2] for c in d.columns]; d.rename_axis("time_s").to_csv(sys.argv[2])' log.tdms log.csv"#);
+    assert_snapshot!(refusal(b"TDSm\x0e\0\0\0\x69\x12\0\0", &plain), @r#"log.csv: this is a TDMS file of LabVIEW, which is not read; write it as CSV: python3 -c 'import nptdms, sys; f = nptdms.TdmsFile.read(sys.argv[1]); w = all("wf_increment" in c.properties for g in f.groups() for c in g.channels()); d = f.as_dataframe(time_index=w); d.columns = [c.split(chr(39))[-2] for c in d.columns]; d.rename_axis("time_s" if w else None).to_csv(sys.argv[2], index=w)' log.tdms log.csv"#);
     assert_snapshot!(refusal(b"\x89HDF\r\n\x1a\n", &plain), @r#"log.csv: this is an HDF5 file, which is not read; write it as CSV: python3 -c 'import h5py, pandas, sys; d = {}; h5py.File(sys.argv[1]).visititems(lambda n, o: d.update({n: pandas.Series(o[()].ravel())}) if isinstance(o, h5py.Dataset) and o.dtype.kind in "fiu" and o.size == max(o.shape or [0]) else None); pandas.DataFrame(d).to_csv(sys.argv[2], index=False)' log.h5 log.csv"#);
 }

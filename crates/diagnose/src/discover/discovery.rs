@@ -39,7 +39,8 @@ pub(crate) struct Discovery {
     /// What is in beside them, the curves of the terms included.
     pub(crate) nuisance: Nuisance,
     pub(super) terms: Vec<Written>,
-    pub(super) held_out: Option<[Left; 2]>,
+    /// Base, effects and map as they would be without the terms.
+    pub(crate) without_terms: AugmentedModel,
     pub(super) before: HeldOut,
 }
 
@@ -99,10 +100,12 @@ pub(crate) fn discover(
     let bare = held.map(|held| Left::of(&AugmentedModel::new(found.base.state.model.clone(), Vec::new()), held));
     let before =
         left(&start).into_iter().chain(bare).min_by(|one, other| one.together_n().total_cmp(&other.together_n()));
+    let without_terms = start.model(found, setting.track);
     let (plain, mapped) = nuisances(setting, found)?;
-    let mut smooth = Step { best: again(&setting.beside(&mapped), &found.best)?, nuisance: mapped.clone(), ..start };
+    let mut smooth =
+        Step { best: again(&setting.beside(&mapped), &found.best)?, nuisance: mapped.clone(), terms: Vec::new() };
     let mut kept: Option<Step> = None;
-    let mut last = before.clone();
+    let mut last = before;
     while smooth.terms.len() < MOST_TERMS {
         let Some(next) = next_term(setting, &mapped, &smooth) else { break };
         let now_kept = without_map(setting, &plain, &next)?;
@@ -118,13 +121,7 @@ pub(crate) fn discover(
         (smooth, last, kept) = (next, now, Some(now_kept));
     }
     let Step { best, nuisance, terms } = kept?;
-    Some(Discovery {
-        best,
-        nuisance,
-        terms,
-        held_out: before.zip(last).map(<[Left; 2]>::from),
-        before: found.best.held_out.clone(),
-    })
+    Some(Discovery { best, nuisance, terms, without_terms, before: found.best.held_out.clone() })
 }
 
 /// What is in beside sentences: nuisances without a static map, and with one that is as smooth as foretells held-out blocks best,

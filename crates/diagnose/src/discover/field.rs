@@ -11,7 +11,7 @@ use pam_core::effects::sentence::{Argument, Curve, Scale, Sentence};
 
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
-use crate::structure::Remainder;
+use crate::structure::ProjectedResidual;
 use crate::track::FOLDS;
 
 /// Squares of a curve's values count as much as this many instants of the full grid: neighbors share their noise.
@@ -21,7 +21,7 @@ const RIDGE: f64 = 10.0;
 pub(super) struct Field<'a> {
     setting: &'a Setting<'a>,
     state: &'a State,
-    remainder: Remainder,
+    remainder: ProjectedResidual,
     /// Factor of each scale at every instant, in the order of [`Scale::ALL`], as much of it as the load cell reads.
     factors: Vec<Vec<f64>>,
     /// Instants that are looked at, of each block.
@@ -45,7 +45,7 @@ pub(super) struct Products {
 impl<'a> Field<'a> {
     pub(super) fn of(setting: &'a Setting<'a>, state: &'a State) -> Option<Self> {
         let track = setting.track;
-        let remainder = Remainder::of(setting, state);
+        let remainder = ProjectedResidual::of(setting, state);
         let base = |at: usize| (&state.sheet.seen[at], &state.sheet.base[at]);
         let factors = Scale::ALL.map(|scale| {
             (0..track.n())

@@ -36,7 +36,8 @@ impl Discovery {
         Empirical {
             terms: terms.collect(),
             blocks: gain(self.before.mean_square().sqrt(), self.best.held_out.mean_square().sqrt()),
-            holdout: self.held_out.as_ref().map(|[before, after]| gain(before.together_n(), after.together_n())),
+            // Known once the models are compared at the rate of the recordings.
+            holdout: None,
         }
     }
 }
@@ -58,20 +59,26 @@ fn parameters(term: &Term, folds: &[Vec<f64>]) -> Vec<ParameterEntry> {
         .collect()
 }
 
-/// What the terms do and gain, to be said after the verdict.
-pub(crate) fn statement(empirical: &Empirical) -> String {
+/// What the terms do and gain, to be said after the verdict. Where nothing is named, a static map may stand beside them
+/// (`with_map`), and the gain is that of both.
+pub(crate) fn statement(empirical: &Empirical, beside_effects: bool, with_map: bool) -> String {
     let words: Vec<&str> = empirical.terms.iter().map(|term| term.words.as_str()).collect();
     let (gain, on) = match empirical.holdout {
-        Some(holdout) => (holdout, "held-out recordings"),
-        None => (empirical.blocks, "held-out blocks"),
+        Some(holdout) => (holdout, "RMSE on held-out recordings"),
+        None => (empirical.blocks, "cross-validated RMSE"),
     };
-    let subject = if words.len() == 1 { "An empirical term models" } else { "Empirical terms model" };
-    format!(
-        " {subject} it, which lowers the error on {on} from {:.2} to {:.2} N: {}.",
-        gain.rmse_without_n,
-        gain.rmse_with_n,
-        words.join("; and ")
-    )
+    let with_map = with_map && !beside_effects && empirical.holdout.is_some();
+    let subject = match (words.len(), with_map) {
+        (1, false) => "An empirical term models",
+        (_, false) => "Empirical terms model",
+        (1, true) => "An empirical term and a smooth static map model",
+        (_, true) => "Empirical terms and a smooth static map model",
+    };
+    let object = if beside_effects { "the rest" } else { "it" };
+    let verb = if gain.rmse_with_n < gain.rmse_without_n { "lower" } else { "raise" };
+    let verb = if words.len() == 1 && !with_map { format!("{verb}s") } else { verb.to_owned() };
+    let (without_n, with_n) = (gain.rmse_without_n, gain.rmse_with_n);
+    format!(" {subject} {object} and {verb} the {on} from {without_n:.2} to {with_n:.2} N: {}.", words.join("; and "))
 }
 
 /// Others that draws of blocks choose less often than this are not named.

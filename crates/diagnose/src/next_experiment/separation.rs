@@ -4,9 +4,9 @@ use pam_core::effects::Role;
 use pam_core::force::columns::ForceColumns;
 use rayon::prelude::*;
 
+use crate::design_matrix::Regressors;
 use crate::protocols::{Protocol, Reach, Take};
 use crate::rehearsal::Rehearsal;
-use crate::sheet::Ground;
 use crate::state::{Setting, State};
 use crate::tangent::{Tangent, norm};
 
@@ -71,7 +71,7 @@ fn separation(
     explanations: &[Explanation],
 ) -> Separation {
     let rehearsal = Rehearsal::of(takes, reach);
-    let ground = Ground { track: &rehearsal.track, columns, only: None, slopes: true };
+    let ground = Regressors { track: &rehearsal.track, columns, only: None, slopes: true };
     let setting = Setting {
         track: &rehearsal.track,
         columns,
@@ -108,7 +108,7 @@ struct Run {
 }
 
 impl Run {
-    fn of(setting: &Setting<'_>, ground: &Ground<'_>, explanation: &Explanation, stands_for_s: &[f64]) -> Self {
+    fn of(setting: &Setting<'_>, ground: &Regressors<'_>, explanation: &Explanation, stands_for_s: &[f64]) -> Self {
         let state = &explanation.state;
         let mut sheet = ground.sheet(&state.guesses, &state.model);
         // The compliance of the strands is written in columns of its own range: weights follow from the parameters.

@@ -7,7 +7,7 @@ use super::worth::LEAST_LOG_RATIO;
 use super::{Judged, Limits, again};
 use crate::coordinates::Coordinates;
 use crate::forms::Forms;
-use crate::hypothesis::Guess;
+use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
 use crate::nuisance::Nuisance;
 use crate::plausible::strains;
@@ -99,7 +99,7 @@ impl Look<'_> {
         };
         let nothing = |&effect: &&'static dyn Effect| {
             let shape = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
-            let guess = Guess { effect, shape, sign: Guess::signs(effect)[0], carried: false };
+            let guess = CandidateEffect { effect, shape, sign: CandidateEffect::signs(effect)[0], carried: false };
             let mean_square = best.state.fit.mean_square;
             Trial { guess, mean_square, held_out: best.held_out.clone(), log_ratio: 0.0 }
         };
@@ -160,7 +160,7 @@ fn sees(named: &Judged) -> bool {
 /// Whether the last effect of `next`, a static one, strains the base as nothing did before. What changes the reading of a force
 /// alone takes nothing of the base's: where the muscle hangs slack, eq. 11 is asked nothing any more.
 pub(super) fn is_strained(setting: &Setting<'_>, next: &Judged, base: &Judged) -> bool {
-    let pulls = |guess: &Guess| guess.effect.is_static() && guess.effect.role() != Role::Reads;
+    let pulls = |guess: &CandidateEffect| guess.effect.is_static() && guess.effect.role() != Role::Reads;
     next.state.guesses.last().is_some_and(pulls) && strains(setting, &next.state, &base.state)
 }
 

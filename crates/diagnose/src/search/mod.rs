@@ -12,12 +12,12 @@ use pam_core::artifact::diagnosis::Coordinate;
 use pam_core::effects::{Effect, Seen};
 
 use crate::coordinates::Coordinates;
-use crate::hypothesis::Guess;
+use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
 use crate::nuisance::Nuisance;
 use crate::stand_ins;
 use crate::state::{Setting, State};
-use crate::structure::{Feature, Remainder, Structure, features, telling_force_n};
+use crate::structure::{Feature, ProjectedResidual, Structure, features, telling_force_n};
 use crate::trial::{Shapes, Trial};
 
 pub(crate) use beside::fitting;
@@ -98,7 +98,7 @@ pub struct Found {
 impl Found {
     /// What was left before anything was named: beside a static map, or without it where an effect was named in its place.
     pub(crate) fn before(&self) -> &HeldOut {
-        let stands = |guess: &Guess| self.of_the_map.contains(&guess.id());
+        let stands = |guess: &CandidateEffect| self.of_the_map.contains(&guess.id());
         let judged = if self.best.state.guesses.iter().any(stands) { &self.base } else { &self.whole };
         &judged.held_out
     }
@@ -112,7 +112,7 @@ impl Found {
             self.taken.remove(index);
         }
         let every: Vec<&Feature> = self.features.iter().collect();
-        self.left = Remainder::of(setting, &self.best.state).structure(&every);
+        self.left = ProjectedResidual::of(setting, &self.best.state).structure(&every);
         true
     }
 }
@@ -153,7 +153,7 @@ pub fn search(
     let mut best = again(&setting.beside(&beside.smooth), &base)?;
     let (remainder, telling_n) = {
         let mapped = setting.beside(&beside.smooth);
-        let remainder = Remainder::of(&mapped, &best.state);
+        let remainder = ProjectedResidual::of(&mapped, &best.state);
         let telling_n = telling_force_n(&mapped, &best.state, &remainder);
         (remainder, telling_n)
     };
@@ -228,7 +228,7 @@ pub fn search(
     }
     let (best, nuisance) = kept_map(plain, best, beside.smooth.clone())?;
     let mapped = plain.beside(&nuisance);
-    let left = Remainder::of(&mapped, &best.state).structure(&every);
+    let left = ProjectedResidual::of(&mapped, &best.state).structure(&every);
     if let Some(left) = &left {
         floor_square = floor_square.min(left.held_out.mean_square());
     }
@@ -276,7 +276,7 @@ mod tests {
         let limits = Limits::of_test(3, 0.3);
         let setting = Setting { floor_square: 0.09, ..given.setting() };
         let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
-        found.best.state.guesses.iter().map(Guess::id).collect()
+        found.best.state.guesses.iter().map(CandidateEffect::id).collect()
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use pam_core::effects::{Kind, Seen};
 
 use super::{Judged, judged};
-use crate::hypothesis::Guess;
+use crate::hypothesis::CandidateEffect;
 use crate::state::{Setting, State};
 use crate::trial::{self, Shapes, Trial};
 use crate::uncertainty::correlated_instants;
@@ -92,7 +92,7 @@ fn detailed(setting: &Setting<'_>, state: &State) -> Option<State> {
         }
         let rest = sampled.fit_without(state, index)?;
         let costs = shapes.into_iter().filter_map(|shape| {
-            let guess = Guess { shape, ..guess.clone() };
+            let guess = CandidateEffect { shape, ..guess.clone() };
             Some((trial::mean_square(&sampled, &rest, &guess)?, guess))
         });
         if let Some((_, detailed)) = costs.min_by(|left, right| left.0.total_cmp(&right.0)) {

@@ -7,7 +7,7 @@ use pam_identification::search_space::Free;
 use super::hypothesis::{Change, Hypothesis, Subject};
 use super::point::Point;
 use super::quantity::{Channel, Quantity};
-use crate::hypothesis::{Guess, Sign};
+use crate::hypothesis::{CandidateEffect, Sign};
 
 /// Factors to a shape of then that a later one is looked for at first.
 const OTHER_SHAPES: [f64; 6] = [0.25, 0.5, 0.75, 1.33, 2.0, 4.0];
@@ -99,9 +99,9 @@ pub(crate) fn variants(
     for &effect in CATALOGUE.iter().filter(is_new) {
         let term = point.terms.len();
         for shape in effect.first_shapes(seen) {
-            for &sign in Guess::signs(effect) {
-                for &carried in Guess::beginnings(effect) {
-                    let guess = Guess { effect, shape: shape.clone(), sign, carried };
+            for &sign in CandidateEffect::signs(effect) {
+                for &carried in CandidateEffect::beginnings(effect) {
+                    let guess = CandidateEffect { effect, shape: shape.clone(), sign, carried };
                     let (moved, ranges) = amplitudes(&guess, term);
                     let values = ranges.iter().map(|(low, high)| 0.0_f64.clamp(*low, *high)).collect();
                     let with = point.clone().with(Term { effect, shape: shape.clone(), amplitudes: values });
@@ -122,7 +122,7 @@ pub(crate) fn parameters(free: &[Free]) -> Vec<Free> {
     own.chain(both.then_some(Free::BladderSum)).collect()
 }
 
-fn amplitudes(guess: &Guess, term: usize) -> (Vec<Quantity>, Vec<(f64, f64)>) {
+fn amplitudes(guess: &CandidateEffect, term: usize) -> (Vec<Quantity>, Vec<(f64, f64)>) {
     let moved = (0..guess.amplitudes().len()).map(|index| Quantity::Amplitude { term, index }).collect();
     debug_assert!(guess.effect.role() == Role::Pulls || guess.amplitudes().is_empty());
     debug_assert!(guess.sign == Sign::Any || guess.effect.has_one_sign());

@@ -4,11 +4,11 @@ use pam_core::artifact::change::{Change, ChangeFit, ChangeKind, ChangeVerdict, C
 
 /// One or two sentences.
 pub(super) fn statement(verdict: ChangeVerdict, changes: &[Change], fit: &ChangeFit) -> String {
-    let [within, now, then] = [fit.within_errors_n, fit.now_n, fit.then_n].map(number);
+    let [as_then, within, now, then] = [fit.as_then_n, fit.within_errors_n, fit.now_n, fit.then_n].map(number);
     let named: Vec<String> = changes.iter().map(said).collect();
     match (verdict, named.is_empty()) {
         (ChangeVerdict::Unchanged, _) => format!(
-            "nothing has changed beyond the standard errors of the baseline, which leaves an RMSE of {within} N on these \
+            "nothing has changed beyond the standard errors of the baseline, which leaves an RMSE of {as_then} N on these \
              recordings."
         ),
         (_, true) => format!(
@@ -17,7 +17,7 @@ pub(super) fn statement(verdict: ChangeVerdict, changes: &[Change], fit: &Change
         ),
         (_, false) => {
             let more = if verdict == ChangeVerdict::Unexplained { "; the rest has no name" } else { "" };
-            format!("{}. The RMSE falls from {within} N to {now} N{more}.", named.join("; "))
+            format!("{}. The RMSE falls from {as_then} N to {now} N{more}.", named.join("; "))
         }
     }
 }

@@ -29,6 +29,8 @@ pub struct DiagnosisPage {
     pub effects: Vec<PageEffect>,
     /// What models the part without a name.
     pub empirical: Option<PageEmpirical>,
+    /// Whether the augmented model has a smooth static map.
+    pub static_map: bool,
     /// Everything that was weighed.
     pub candidates: Vec<PageCandidate>,
     /// What is still unknown.
@@ -39,6 +41,18 @@ pub struct DiagnosisPage {
     pub isolability: Option<PageIsolability>,
     /// How the diagnosis came about.
     pub appendix: PageAppendix,
+}
+
+impl DiagnosisPage {
+    /// What was added to the model, in words; none where nothing was.
+    pub(super) fn additions(&self) -> Option<&'static str> {
+        match (self.effects.is_empty(), self.empirical.is_none()) {
+            (true, true) => self.static_map.then_some("a smooth static map"),
+            (false, true) => Some("the named effects"),
+            (true, false) => Some("the empirical terms"),
+            (false, false) => Some("effects and empirical terms"),
+        }
+    }
 }
 
 /// The model as it was given, before it was refitted.
@@ -248,7 +262,7 @@ pub struct PageCandidate {
     pub name: String,
     /// Evidence alone, against the base model.
     pub evidence: PageEvidence,
-    /// Share of the excess that it explains alone, in [0, 1].
+    /// Share of the mean square over blocks left out of the fit that it takes away alone, in [0, 1].
     pub explains: f64,
     /// What became of it, in words.
     pub outcome: String,

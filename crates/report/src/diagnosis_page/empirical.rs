@@ -50,7 +50,8 @@ pub struct PageTerm {
 pub(super) fn empirical(page: Option<&PageEmpirical>) -> Result<String, FigureError> {
     let Some(page) = page else { return Ok(String::new()) };
     let [without_n, with_n] = page.left_n.map(newtons);
-    let on = if page.of_holdout { "over all samples of held-out recordings" } else { "of blocks left out of the fit" };
+    let on =
+        if page.of_holdout { "over counted samples of held-out recordings" } else { "of blocks left out of the fit" };
     let mut html = heading("Unmodelled structure, as empirical terms");
     html.push_str(&paragraph(&format!(
         "No effect of the catalogue explains the rest. An empirical equation, found in these recordings, lowers the RMSE \
@@ -179,7 +180,7 @@ mod tests {
             "the pressure (25 %)",
             "stribeck",
             "<svg",
-            "over all samples of held-out recordings",
+            "over counted samples of held-out recordings",
         ] {
             assert!(html.contains(text), "{text}");
         }

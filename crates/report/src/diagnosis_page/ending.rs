@@ -13,20 +13,17 @@ use crate::{FigureError, Table};
 
 /// Section: what the effects buy.
 pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<String, FigureError> {
-    if page.effects.is_empty() && page.empirical.is_none() {
+    let Some(additions) = page.additions() else {
         return Ok(paragraph("Nothing was added to the model, so nothing changes."));
-    }
+    };
     let mut html = match page.holdout {
-        // What an empirical term gains is said beside its equation.
-        _ if page.effects.is_empty() => {
-            paragraph("No effect was named. The augmented model has the empirical terms above and no other addition.")
-        }
         Some(fit) => {
-            let gone = share_explained(fit).map_or(String::new(), |share| {
-                format!(", {} of what the base model leaves above the noise", percent(share))
-            });
+            let gone = share_explained(fit)
+                .map_or(String::new(), |share| format!(", {} of the excess over the noise floor", percent(share)));
+            let falls = if fit.rmse_after_n < fit.rmse_before_n { "falls" } else { "rises" };
             paragraph(&format!(
-                "On recordings that nothing was fitted to, the residual falls from {} to {}{gone}; the noise floor is {}.",
+                "With {additions}, the RMSE on recordings that nothing was fitted to {falls} from {} to {}{gone}; the noise \
+                 floor is {}.",
                 newtons(fit.rmse_before_n),
                 newtons(fit.rmse_after_n),
                 newtons(fit.noise_floor_n)
@@ -37,8 +34,8 @@ pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Strin
              see what the effects are worth on data that they have not seen.",
         ),
     };
-    if let Some(fit) = page.holdout.filter(|_| !page.effects.is_empty()) {
-        let svg = fit_bars("Residual on held-out recordings", &[("held-out recordings", fit)], true)?;
+    if let Some(fit) = page.holdout {
+        let svg = fit_bars("Residual on held-out recordings", &[("held-out recordings", fit)], Some(additions))?;
         html.push_str(&figure(&svg, "Residual on held-out recordings, before and after, against the noise floor."));
     }
     if !page.base_parameters.is_empty() {

@@ -9,8 +9,9 @@ use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, legend, palette}
 /// Height of a bar, in pixels.
 const BAR: f64 = 22.0;
 
-/// Draws a pair of bars for each entry of `fits`; one bar where `after` is false.
-pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], after: bool) -> Result<String, FigureError> {
+/// Draws a pair of bars for each entry of `fits`; one bar where nothing was added to the model.
+pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], additions: Option<&str>) -> Result<String, FigureError> {
+    let after = additions.is_some();
     let group = if after { 2.0 * BAR + 34.0 } else { BAR + 34.0 };
     let height = 44.0 + group * fits.len() as f64 + 46.0;
     let largest = fits.iter().flat_map(|(_, fit)| [fit.rmse_before_n, fit.rmse_after_n, fit.noise_floor_n]);
@@ -38,7 +39,7 @@ pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], after: bool) -> Re
             for (value, color) in bars {
                 let (left, right) = (panel.frame.left, panel.at(value, 0.0).0);
                 canvas.rect(Rect { left, top: bar_top, right, bottom: bar_top + BAR }, color);
-                // Behind the noise floor where the bar ends close before it.
+                // Beyond the noise floor where the bar ends close before it.
                 let floor = panel.at(fit.noise_floor_n, 0.0).0;
                 let at = if floor > right - 4.0 && floor < right + 60.0 { floor.max(right) } else { right };
                 let text = newtons(value);
@@ -54,9 +55,8 @@ pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], after: bool) -> Re
         canvas.line([(left, panel.frame.top), (left, bottom)], palette::SILVER, 1.0);
         panel.draw_x_axis(canvas);
         let mut keys = vec![Key::new("base model, refitted", Mark::Patch, BEFORE)];
-        if after {
-            keys.push(Key::new("with the named effects", Mark::Patch, AFTER));
-        }
+        let with = additions.map(|additions| format!("with {additions}"));
+        keys.extend(with.as_deref().map(|with| Key::new(with, Mark::Patch, AFTER)));
         keys.push(Key::new("noise floor", Mark::Dashes(1.8), palette::INK));
         legend(canvas, &keys, panel.frame.right, 16.0);
     })

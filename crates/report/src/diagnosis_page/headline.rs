@@ -17,7 +17,7 @@ pub(super) fn headline(page: &DiagnosisPage) -> String {
         Some(given) if !given.holdout_missed.is_empty() => "Held-out recordings differ from the fitted ones",
         _ => words,
     };
-    let after = !page.effects.is_empty();
+    let after = page.additions().is_some();
     let mut cards = card_of_fit("On the recordings used for fitting", page.estimation, after);
     cards.push_str(&match page.holdout {
         Some(fit) => card_of_fit("On held-out recordings", fit, after),

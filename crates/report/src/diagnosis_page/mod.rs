@@ -105,7 +105,7 @@ fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
         format!("Refitted to these recordings, the base model leaves {}{times}. {verdict}", newtons(rmse_before_n));
     let mut fits = vec![("estimation recordings", page.estimation)];
     fits.extend(page.holdout.map(|fit| ("held-out recordings", fit)));
-    let svg = fit_bars::fit_bars("Residual before and after", &fits, !page.effects.is_empty())?;
+    let svg = fit_bars::fit_bars("Residual before and after", &fits, page.additions())?;
     let caption = "RMSE over counted samples. Samples around reversals, where noise hides the direction of friction, and beyond \
                    a sensor's range are not counted; the table has both.";
     let given = page.as_given.as_ref().map_or(String::new(), given::given);
@@ -114,11 +114,12 @@ fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
 
 /// RMSE over counted and over all samples, side by side.
 fn side_by_side(page: &DiagnosisPage) -> Table {
-    let after = !page.effects.is_empty();
+    let with = page.additions().map(|additions| format!("with {additions}"));
+    let after = with.is_some();
     let mut header = vec!["RMSE", "samples"];
     header.extend(page.as_given.as_ref().map(|_| "as given"));
     header.push("refitted");
-    header.extend(after.then_some("with the effects"));
+    header.extend(with.as_deref());
     header.push("noise floor");
     let mut table = Table::new(header);
     let given = page.as_given.as_ref();

@@ -3,7 +3,7 @@
 use super::{DiagnosisPage, PageAlternative, PageCandidate, PageEffect, PageEvidence, PageParameter, PageVerdict};
 use crate::escape::escaped;
 use crate::number::{engineering, engineering_with_stderr, probability, significant};
-use crate::page::html::{equation, heading, newtons, paragraph, percent, remark, symbol_table, symbols, table};
+use crate::page::html::{equation, heading, newtons, paragraph, remark, symbol_table, symbols, table};
 use crate::{Table, number};
 
 pub(super) fn named(page: &DiagnosisPage) -> String {
@@ -58,7 +58,7 @@ fn tells(candidate: &PageCandidate) -> bool {
     candidate.outcome == "named" || candidate.explains >= LEAST_EXPLAINED
 }
 
-/// Share of the excess below which a candidate is folded away.
+/// Share of the mean square below which a candidate is folded away.
 const LEAST_EXPLAINED: f64 = 0.02;
 
 fn effect(effect: &PageEffect) -> String {
@@ -151,12 +151,13 @@ fn alternative(alternative: &PageAlternative) -> String {
 }
 
 fn candidates(candidates: &[&PageCandidate]) -> Table {
-    let mut table = Table::new(["candidate", "explains", "log predictive ratio", "blocks improved", "p", "outcome"]);
+    let mut table =
+        Table::new(["candidate", "cross-validated RMSE", "log predictive ratio", "blocks improved", "p", "outcome"]);
     for candidate in candidates {
         let evidence = &candidate.evidence;
         table.row([
             if candidate.name.is_empty() { candidate.id.clone() } else { candidate.name.clone() },
-            percent(candidate.explains),
+            format!("{} → {}", newtons(evidence.rmse_without_n), newtons(evidence.rmse_with_n)),
             number::with_minus(format!("{:.1}", evidence.log_ratio)),
             format!("{} of {}", evidence.blocks_improved, evidence.n_blocks),
             probability(evidence.p_value),

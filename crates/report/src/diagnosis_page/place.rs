@@ -36,7 +36,7 @@ pub(super) fn place(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Stri
     html.push_str(&heading("Over pressure and contraction"));
     html.push_str(&figure(
         &residual_maps::residual_maps(recordings, &page.regions, noise_n)?,
-        if page.effects.is_empty() {
+        if page.additions().is_none() {
             "Red: the muscle pulls more than the model says; blue: less. The size, root mean square, also shows residuals \
              that cancel in the mean. Cells without samples stay blank."
         } else {

@@ -22,7 +22,7 @@ pub(super) fn refusals(page: &FleetPage) -> String {
     for refusal in &page.refusals {
         let campaign = &page.campaigns[refusal.campaign];
         html.push_str(&format!(
-            "<tr><td>{}</td><td>{}</td><td class=\"date\">{}</td><td>{}</td><td class=\"said\">{}</td></tr>\n",
+            "<tr><td>{}</td><td class=\"rig\">{}</td><td class=\"date\">{}</td><td>{}</td><td class=\"said\">{}</td></tr>\n",
             escaped(&campaign.muscle),
             escaped(&campaign.rig),
             escaped(&campaign.date),
@@ -49,7 +49,7 @@ pub(super) fn campaigns(page: &FleetPage) -> String {
         let outcome = campaign.outcome;
         let effects: Vec<&str> = campaign.effects.iter().map(|(id, _)| id.as_str()).collect();
         html.push_str(&format!(
-            "<tr><td>{}</td><td>{}</td><td class=\"date\">{}</td>{make}<td class=\"{outcome}\">{outcome}</td>{}<td>{}</td>{}{}{}</tr>\n",
+            "<tr><td>{}</td><td class=\"rig\">{}</td><td class=\"date\">{}</td>{make}<td class=\"{outcome}\">{outcome}</td>{}<td>{}</td>{}{}{}</tr>\n",
             linked(&campaign.muscle, campaign.link.as_deref()),
             escaped(&campaign.rig),
             escaped(&campaign.date),

@@ -10,7 +10,8 @@ use crate::plot::{Anchor, Axis, Canvas, Panel, Rect, palette, text_width};
 const WITH_ERRORS: usize = 150;
 /// Points outside the limits that are named.
 const NAMED: usize = 14;
-/// Height of a chart, in pixels.
+/// Width and height of a chart, in pixels; its letters are legible on a page 800 pixels wide.
+const WIDTH: u32 = 780;
 const HEIGHT: u32 = 230;
 
 pub(super) fn charts(page: &FleetPage) -> Result<String, FigureError> {
@@ -18,7 +19,7 @@ pub(super) fn charts(page: &FleetPage) -> Result<String, FigureError> {
         return Ok(paragraph("No campaign has a model."));
     }
     let mut html = paragraph(
-        "A dot is a campaign; rigs stand side by side, dates run from left to right within each. The gray band holds what is \
+        "A dot is a campaign; rigs stand side by side, dates run from left to right within each. The shaded band holds what is \
          expected of the make: median and robust spread, as wide as the number of values on this page asks for, so that chance \
          alone puts a value outside in one of twenty fleets. Values outside are orange; what a whole rig shares does not count \
          against its muscles.",
@@ -36,6 +37,29 @@ pub(super) fn charts(page: &FleetPage) -> Result<String, FigureError> {
     Ok(html)
 }
 
+/// `chart` in the unit that keeps its values between 1 and 1,000, or near, and that unit.
+fn in_a_handy_unit(chart: &FleetChart) -> (FleetChart, &str) {
+    let largest = chart.points.iter().map(|point| point.value.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let (factor, unit) = match chart.unit.as_str() {
+        "Pa" if largest >= 1e9 => (1e-9, "GPa"),
+        "Pa" if largest >= 1e6 => (1e-6, "MPa"),
+        "Pa" if largest >= 1e3 => (1e-3, "kPa"),
+        "m^2" => (1e6, "mm²"),
+        unit => (1.0, unit),
+    };
+    let scaled = |point: &FleetPoint| FleetPoint {
+        value: factor * point.value,
+        stderr: point.stderr.map(|stderr| factor * stderr),
+        ..point.clone()
+    };
+    let chart = FleetChart {
+        points: chart.points.iter().map(scaled).collect(),
+        limits: chart.limits.map(|limits| limits.map(|limit| factor * limit)),
+        ..chart.clone()
+    };
+    (chart, unit)
+}
+
 /// Points by rig and date.
 fn in_order<'a>(page: &FleetPage, chart: &'a FleetChart) -> Vec<&'a FleetPoint> {
     let mut points: Vec<&FleetPoint> = chart.points.iter().collect();
@@ -48,29 +72,34 @@ fn in_order<'a>(page: &FleetPage, chart: &'a FleetChart) -> Vec<&'a FleetPoint> 
 }
 
 fn drawn(page: &FleetPage, chart: &FleetChart) -> Result<String, FigureError> {
-    let points = in_order(page, chart);
-    let (low, high) = extent(chart);
-    let unit = if chart.unit == "1" { String::new() } else { format!(" ({})", chart.unit) };
+    let (chart, unit) = in_a_handy_unit(chart);
+    let points = in_order(page, &chart);
+    let (low, high) = extent(&chart);
+    let unit = if unit == "1" { String::new() } else { format!(" ({unit})") };
     let title = format!("{}{unit}", chart.title);
-    Canvas::document(1040, HEIGHT, &title, |canvas, sheet| {
+    Canvas::document(WIDTH, HEIGHT, &title, |canvas, sheet| {
         let y = if chart.logarithmic { Axis::logarithmic("", low, high) } else { Axis::linear("", low, high, 4) };
         // Names of rigs take the place of ticks.
         let mut x = Axis::exact("", -0.7, points.len() as f64 - 0.3, 1);
         x.ticks.clear();
         let panel = Panel {
-            frame: Rect { left: 84.0, top: 34.0, right: sheet.right - 10.0, bottom: sheet.bottom - 26.0 },
+            frame: Rect { left: 84.0, top: 34.0, right: sheet.right - 10.0, bottom: sheet.bottom - 28.0 },
             x,
             y,
             upward_labels: false,
         };
         panel.draw_frame(canvas);
-        canvas.bold(&title, (panel.frame.left, 16.0), Anchor::Start, 12.5, palette::INK);
+        canvas.bold(&title, (panel.frame.left, 16.0), Anchor::Start, 14.0, palette::INK);
         if let Some([lower, center, upper]) = chart.limits {
             panel.band(canvas, lower, upper, NOISE);
             panel.level(canvas, center, palette::GRAY, 1.0);
         }
         rigs(page, &points, &panel, canvas);
-        let radius = if points.len() > 300 { 1.6 } else { 2.6 };
+        let radius = match points.len() {
+            0..=60 => 3.6,
+            61..=300 => 2.4,
+            _ => 1.4,
+        };
         for (place, point) in points.iter().enumerate() {
             let color = if point.outside { BEFORE } else { AFTER };
             if let Some(stderr) = point.stderr.filter(|_| points.len() <= WITH_ERRORS) {
@@ -96,9 +125,9 @@ fn rigs(page: &FleetPage, points: &[&FleetPoint], panel: &Panel, canvas: &mut Ca
             canvas.line([(left, panel.frame.top), (left, panel.frame.bottom)], palette::SILVER, 1.0);
         }
         let name = rig(&group[0]);
-        if text_width(name, 11.5) < right - left {
+        if text_width(name, 12.5) < right - left {
             let below = (0.5 * (left + right), panel.frame.bottom + 13.0);
-            canvas.text(name, below, Anchor::Middle, 11.5, palette::GRAY);
+            canvas.text(name, below, Anchor::Middle, 12.5, palette::GRAY);
         }
         from = to;
     }
@@ -117,7 +146,7 @@ fn names(page: &FleetPage, points: &[&FleetPoint], panel: &Panel, canvas: &mut C
     for (place, point) in outside {
         let name = &page.campaigns[point.campaign].muscle;
         let (x, y) = spot(panel, place, point.value);
-        let width = text_width(name, 10.5);
+        let width = text_width(name, 12.0);
         // Beside the dot, on the side where the frame has room.
         let right = x + 8.0 + width < panel.frame.right;
         let left = if right { x + 6.0 } else { x - 6.0 - width };
@@ -126,7 +155,7 @@ fn names(page: &FleetPage, points: &[&FleetPoint], panel: &Panel, canvas: &mut C
             rect.left > other.right || rect.right < other.left || rect.top > other.bottom || rect.bottom < other.top
         });
         if free && taken.len() < most {
-            canvas.text(name, (left, y), Anchor::Start, 10.5, palette::INK);
+            canvas.text(name, (left, y), Anchor::Start, 12.0, palette::INK);
             taken.push(rect);
         }
     }

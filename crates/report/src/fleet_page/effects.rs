@@ -49,7 +49,7 @@ pub(super) fn effects(page: &FleetPage) -> String {
             })
             .collect();
         html.push_str(&format!(
-            "<tr><td>{}</td><td>{}</td><td class=\"date\">{}</td>{cells}</tr>\n",
+            "<tr><td>{}</td><td class=\"rig\">{}</td><td class=\"date\">{}</td>{cells}</tr>\n",
             linked(&campaign.muscle, campaign.link.as_deref()),
             escaped(&campaign.rig),
             escaped(&campaign.date)

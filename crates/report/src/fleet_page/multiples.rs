@@ -15,7 +15,7 @@ const REACH: f64 = 2.5;
 /// Longest name of a quantity that is written whole.
 const LETTERS: usize = 17;
 
-/// A figure for each of the worst; a chart's limits are the gray band.
+/// A figure for each of the worst; a chart's limits are the shaded band.
 pub(super) fn multiples(page: &FleetPage) -> Result<String, FigureError> {
     // A figure shows charts; findings of a diagnosis alone have no place on one.
     let shown: Vec<&FleetStanding> = page.standing.iter().take(WORST).collect();
@@ -25,7 +25,7 @@ pub(super) fn multiples(page: &FleetPage) -> Result<String, FigureError> {
         _ => "All of them".to_owned(),
     };
     Ok(format!(
-        "<div class=\"multiples\">\n{}</div>\n<p class=\"remark\">{what}: where each lies in every quantity, the gray band being \
+        "<div class=\"multiples\">\n{}</div>\n<p class=\"remark\">{what}: where each lies in every quantity, the shaded band being \
          the limits between which it is expected. A dot at the edge lies further out.</p>\n",
         figures?
     ))

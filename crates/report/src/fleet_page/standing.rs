@@ -28,7 +28,7 @@ pub(super) fn standing(page: &FleetPage) -> Result<String, FigureError> {
             .map(|reason| format!("<span class=\"reason\">{}</span>", escaped(reason)))
             .collect();
         html.push_str(&format!(
-            "<tr><td>{}</td><td>{}</td><td class=\"date\">{}</td><td class=\"number\" data-value=\"{:.4}\">{}</td><td>{reasons}</td></tr>\n",
+            "<tr><td>{}</td><td class=\"rig\">{}</td><td class=\"date\">{}</td><td class=\"number\" data-value=\"{:.4}\">{}</td><td>{reasons}</td></tr>\n",
             linked(&campaign.muscle, campaign.link.as_deref()),
             escaped(&campaign.rig),
             escaped(&campaign.date),

@@ -12,7 +12,7 @@
 mod panel;
 
 use crate::FigureError;
-use crate::plot::{Anchor, Canvas, Color, palette};
+use crate::plot::{Anchor, Canvas, Color, Mark, palette};
 use panel::{Curve, draw};
 
 /// One arm; every column has one entry per instant. A lift that was given up is shorter than the reference.
@@ -91,11 +91,16 @@ fn panels(figure: &LiftFigure) -> [PanelData; 6] {
     let [left, right] = &figure.arms;
     let [angle, velocity, acceleration] = &figure.reference;
     let pair = |signal: Signal| {
-        [Curve::new("left", 2.0, LEFT, signal(left).clone()), Curve::new("right", 1.0, RIGHT, signal(right).clone())]
+        // Where both arms do the same, the dashes let the line below them be seen.
+        let [line, dashes] = [Mark::Line(2.0), Mark::Dashes(1.8)];
+        [
+            Curve::new("left", line, LEFT, signal(left).clone()),
+            Curve::new("right", dashes, RIGHT, signal(right).clone()),
+        ]
     };
     // Signals that should be what is drawn broad and gray below them.
     let on = |text: &'static str, width: f64, should: &[f64], signal: Signal| {
-        let mut curves = vec![Curve::new(text, width, REFERENCE, should.to_vec())];
+        let mut curves = vec![Curve::new(text, Mark::Line(width), REFERENCE, should.to_vec())];
         curves.extend(pair(signal));
         curves
     };

@@ -3,20 +3,24 @@
 use super::PanelData;
 use crate::plot::{Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, thin, title};
 
+/// Length of a dash, in pixels.
+const DASH: f64 = 6.0;
+
 /// Values over time.
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
     /// Name in the legend.
     text: &'static str,
-    width: f64,
+    mark: Mark,
     color: Color,
     /// One value for each instant.
     values: Vec<f64>,
 }
 
 impl Curve {
-    pub(super) fn new(text: &'static str, width: f64, color: Color, values: Vec<f64>) -> Self {
-        Self { text, width, color, values }
+    /// `mark` is a line or dashes.
+    pub(super) fn new(text: &'static str, mark: Mark, color: Color, values: Vec<f64>) -> Self {
+        Self { text, mark, color, values }
     }
 
     /// The curve of what `of` makes of each value and of what it should be.
@@ -53,10 +57,16 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, letter: &str, data: &Pan
     for curve in &data.curves {
         let kept = thin(&curve.values, (2.0 * pixels) as usize);
         let points = kept.into_iter().filter_map(|row| Some((*time_s.get(row)?, curve.values[row])));
-        panel.line(canvas, points, curve.color, curve.width);
+        match curve.mark {
+            Mark::Dashes(width) => {
+                let points = points.map(|(time_s, value)| panel.at(time_s, value));
+                canvas.dashed_line(points, curve.color, width, DASH);
+            }
+            Mark::Line(width) => panel.line(canvas, points, curve.color, width),
+            Mark::Dot | Mark::Ring | Mark::Patch => {}
+        }
     }
     let (y, _) = title(canvas, cell, letter, data.title);
-    let keys: Vec<Key> =
-        data.curves.iter().map(|curve| Key::new(curve.text, Mark::Line(curve.width.max(1.4)), curve.color)).collect();
+    let keys: Vec<Key> = data.curves.iter().map(|curve| Key::new(curve.text, curve.mark, curve.color)).collect();
     legend(canvas, &keys, panel.frame.right, y);
 }

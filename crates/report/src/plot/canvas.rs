@@ -80,6 +80,12 @@ impl Canvas<'_> {
         self.path(stroke(color, width), &data);
     }
 
+    /// The same in dashes and gaps `dash` pixels long.
+    pub fn dashed_line(&mut self, points: impl IntoIterator<Item = (f64, f64)>, color: Color, width: f64, dash: f64) {
+        let style = format!("{} stroke-dasharray=\"{}\" stroke-linecap=\"butt\"", stroke(color, width), FINE * dash);
+        self.path(style, &line_data(points));
+    }
+
     /// A line of dashes `dash` pixels long that begins and ends with ink.
     pub fn dashes(&mut self, from: (f64, f64), to: (f64, f64), color: Color, width: f64, dash: f64) {
         let length = (to.0 - from.0).hypot(to.1 - from.1);

@@ -53,7 +53,7 @@ fn main() -> std::process::ExitCode {
 fn run(args: &Args) -> Result<Verdict> {
     let console = args.run.start()?;
     ensure!(args.cases > 0, "--cases 0 proves nothing");
-    // Before an hour of work, not behind it.
+    // Before an hour of work, not after it.
     if let Some(folder) = &args.record {
         pam_proof::folder::make(folder)?;
     }

@@ -7,13 +7,13 @@ use pam_core::force::ForceModel;
 use pam_core::force::columns::{FRICTION, ForceColumns, N_COLUMNS};
 use rayon::prelude::*;
 
-use crate::hypothesis::{Guess, n_amplitudes};
+use crate::hypothesis::{CandidateEffect, n_amplitudes};
 use crate::track::Track;
 use pam_core::shift::shift;
 
 /// Rows of a hypothesis.
 #[derive(Debug, Clone)]
-pub struct Sheet {
+pub struct DesignMatrix {
     /// Moments as the muscle sees them.
     pub seen: Vec<Moment>,
     /// What eq. 11 says there, with the parameters that the sheet was made with.
@@ -24,7 +24,7 @@ pub struct Sheet {
     pub width: usize,
 }
 
-impl Sheet {
+impl DesignMatrix {
     /// Force at instant `at` that `weights` of the columns make, in N.
     pub fn force_n(&self, at: usize, weights: &[f64]) -> f64 {
         let row = &self.columns[at * self.width..(at + 1) * self.width];
@@ -34,7 +34,7 @@ impl Sheet {
 
 /// What does not change during a diagnosis.
 #[derive(Debug)]
-pub struct Ground<'a> {
+pub struct Regressors<'a> {
     /// The recordings.
     pub track: &'a Track,
     /// Columns of eq. 11.
@@ -45,18 +45,18 @@ pub struct Ground<'a> {
     pub slopes: bool,
 }
 
-impl Ground<'_> {
+impl Regressors<'_> {
     /// The rows of `guesses`; what effects need of the base comes from `model`.
-    pub fn sheet(&self, guesses: &[Guess], model: &ForceModel) -> Sheet {
+    pub fn sheet(&self, guesses: &[CandidateEffect], model: &ForceModel) -> DesignMatrix {
         let width = N_COLUMNS + n_amplitudes(guesses);
         let n = self.track.n();
-        let mut sheet = Sheet {
+        let mut sheet = DesignMatrix {
             seen: self.track.instants.iter().map(|instant| instant.moment).collect(),
             base: vec![Base::default(); n],
             columns: vec![0.0; n * width],
             width,
         };
-        let Sheet { seen, base, columns, .. } = &mut sheet;
+        let DesignMatrix { seen, base, columns, .. } = &mut sheet;
         let (mut seen, mut base, mut columns) = (&mut seen[..], &mut base[..], &mut columns[..]);
         let parts: Vec<_> = self
             .track
@@ -74,7 +74,7 @@ impl Ground<'_> {
         sheet
     }
 
-    fn fill(&self, part: Part<'_>, guesses: &[Guess], model: &ForceModel) {
+    fn fill(&self, part: Part<'_>, guesses: &[CandidateEffect], model: &ForceModel) {
         let Part { range, seen, base, columns, width } = part;
         let mut delays_s = [0.0; 2];
         for guess in guesses.iter().filter(|guess| guess.effect.role() == Role::Shift) {
@@ -124,7 +124,7 @@ impl Ground<'_> {
     }
 
     /// Columns of one more guess that only adds, over the moments of `sheet`, row-major.
-    pub fn more_columns(&self, sheet: &Sheet, guess: &Guess, model: &ForceModel) -> Vec<f64> {
+    pub fn more_columns(&self, sheet: &DesignMatrix, guess: &CandidateEffect, model: &ForceModel) -> Vec<f64> {
         let n = guess.amplitudes().len();
         let mut columns = vec![0.0; self.track.n() * n];
         for range in &self.track.recordings {
@@ -138,7 +138,7 @@ impl Ground<'_> {
 
     /// By how much the columns of `guess` differ in every recording where the same recording went before; none of what is
     /// constant over a recording, which its tare stands for.
-    pub fn beginnings(&self, sheet: &Sheet, guess: &Guess, model: &ForceModel) -> Vec<Vec<f64>> {
+    pub fn beginnings(&self, sheet: &DesignMatrix, guess: &CandidateEffect, model: &ForceModel) -> Vec<Vec<f64>> {
         let n = guess.amplitudes().len();
         let mut columns = Vec::new();
         for range in &self.track.recordings {
@@ -186,7 +186,7 @@ fn split_off<'a, T>(slice: &mut &'a mut [T], n: usize) -> &'a mut [T] {
     slice.split_off_mut(..n).unwrap_or_default()
 }
 
-fn start(guesses: &[Guess], model: &ForceModel) -> Vec<Box<dyn Memory>> {
+fn start(guesses: &[CandidateEffect], model: &ForceModel) -> Vec<Box<dyn Memory>> {
     guesses.iter().map(|guess| guess.effect.start(model.muscle(), &guess.shape)).collect()
 }
 

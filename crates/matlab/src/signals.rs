@@ -1,4 +1,4 @@
-//! Which of the values are columns of a recording, and what they are called.
+//! Columns among the values, and their labels.
 //!
 //! | in the file                                             | column                                            |
 //! |---------------------------------------------------------|---------------------------------------------------|
@@ -12,42 +12,77 @@
 //!
 //! Simulink's time is in seconds, always; of all else the unit is in the name, in the file beside it, or asked for.
 
-use std::collections::BTreeMap;
-
-use super::super::units::{Name, Quantity};
 use super::array::{Numbers, Structure, Value, Variable};
 
 /// Columns of a matrix that are given names.
 const MAX_MATRIX_COLUMNS: usize = 256;
 
+/// A name that a column may have.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Label {
+    /// As it stands in the file.
+    Name(String),
+    /// A name and the unit beside it.
+    WithUnit {
+        /// The name.
+        name: String,
+        /// The unit, as the file spells it.
+        unit: String,
+    },
+    /// Time, in this unit.
+    Time {
+        /// The unit, as the file spells it.
+        unit: String,
+    },
+}
+
 /// A column: samples within an array.
 #[derive(Debug, Clone)]
-pub(super) struct Column<'a> {
-    /// What it may be called, the best first.
-    names: Vec<String>,
+pub struct Column<'a> {
+    /// Its names, the best first.
+    pub labels: Vec<Label>,
     numbers: Numbers<'a>,
     first: usize,
     step: usize,
-    pub(super) n_samples: usize,
+    n_samples: usize,
 }
 
 impl Column<'_> {
-    /// Sample `index`.
-    pub(super) fn get(&self, index: usize) -> f64 {
+    /// Number of samples.
+    #[expect(clippy::len_without_is_empty, reason = "a column has two samples or more")]
+    pub fn len(&self) -> usize {
+        self.n_samples
+    }
+
+    /// Sample `index`; NaN where there is none.
+    pub fn get(&self, index: usize) -> f64 {
         self.numbers.get(self.first + index * self.step)
     }
 
-    fn samples(&self) -> impl Iterator<Item = u64> {
-        (0..self.n_samples).map(|index| self.get(index).to_bits())
+    /// Whether the samples are those of `other`, bit by bit.
+    pub fn has_samples_of(&self, other: &Column<'_>) -> bool {
+        let bits = |column: &Self, index| column.get(index).to_bits();
+        self.n_samples == other.n_samples
+            && (0..self.n_samples).all(|index| bits(self, index) == other.get(index).to_bits())
     }
 }
 
-/// What a file has to offer.
+/// A variable that only MATLAB reads.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Object {
+    /// Where it lies.
+    pub path: String,
+    /// Its class.
+    pub class: String,
+}
+
+/// The columns of a file.
 #[derive(Debug, Default)]
-pub(super) struct Signals<'a> {
-    pub(super) columns: Vec<Column<'a>>,
-    /// Variables that are objects, and their classes.
-    pub(super) objects: Vec<(String, String)>,
+pub struct Signals<'a> {
+    /// Every column, in the order of the file.
+    pub columns: Vec<Column<'a>>,
+    /// Variables that are objects.
+    pub objects: Vec<Object>,
 }
 
 impl<'a> Signals<'a> {
@@ -57,29 +92,11 @@ impl<'a> Signals<'a> {
         for variable in variables {
             signals.value(&variable.value, &variable.name, &[]);
         }
-        signals.drop_equal_times();
         signals
     }
 
-    /// Names of the columns: what one of `wanted` asks for, or else the best that no other column has.
-    pub(super) fn names(&self, wanted: &[&str]) -> Vec<Option<String>> {
-        let asked = |name: &&String| wanted.iter().any(|wanted| wanted.eq_ignore_ascii_case(name));
-        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-        for name in self.columns.iter().flat_map(|column| &column.names) {
-            *counts.entry(name).or_default() += 1;
-        }
-        let unique = |name: &&String| counts.get(name.as_str()) == Some(&1);
-        self.columns
-            .iter()
-            .map(|column| {
-                let mut names = column.names.iter();
-                names.clone().find(asked).or_else(|| names.clone().find(unique)).or(names.next_back()).cloned()
-            })
-            .collect()
-    }
-
-    /// `better` names come before the path.
-    fn value(&mut self, value: &Value<'a>, path: &str, better: &[String]) {
+    /// `better` labels come before the path.
+    fn value(&mut self, value: &Value<'a>, path: &str, better: &[Label]) {
         match value {
             Value::Numbers(numbers) => self.numbers(numbers, path, better),
             Value::Structure(structure) => {
@@ -94,33 +111,33 @@ impl<'a> Signals<'a> {
                     self.value(cell, &format!("{path}{{{}}}", index + 1), &[]);
                 }
             }
-            Value::Object(class) => self.objects.push((path.to_owned(), class.clone())),
+            Value::Object(class) => self.objects.push(Object { path: path.to_owned(), class: class.clone() }),
             Value::Text(_) | Value::Other => {}
         }
     }
 
-    fn numbers(&mut self, numbers: &Numbers<'a>, path: &str, better: &[String]) {
+    fn numbers(&mut self, numbers: &Numbers<'a>, path: &str, better: &[Label]) {
         let Numbers { n_rows, n_columns, .. } = *numbers;
         let column =
-            |names: Vec<String>, first, step, n_samples| Column { names, numbers: *numbers, first, step, n_samples };
+            |labels: Vec<Label>, first, step, n_samples| Column { labels, numbers: *numbers, first, step, n_samples };
         // A single number is a constant, which --fixed is for.
         if numbers.len() < 2 {
             return;
         }
         if n_rows == 1 || n_columns == 1 {
-            let mut names: Vec<String> = better.iter().cloned().chain([path.to_owned()]).collect();
-            names.dedup();
-            self.columns.push(column(names, 0, 1, numbers.len()));
+            let mut labels: Vec<Label> = better.iter().cloned().chain([Label::Name(path.to_owned())]).collect();
+            labels.dedup();
+            self.columns.push(column(labels, 0, 1, numbers.len()));
         } else if n_rows >= n_columns {
             // Samples go along the longer side.
             for index in 0..n_columns.min(MAX_MATRIX_COLUMNS) {
-                let names = vec![format!("{path}(:,{})", index + 1)];
-                self.columns.push(column(names, index * n_rows, 1, n_rows));
+                let labels = vec![Label::Name(format!("{path}(:,{})", index + 1))];
+                self.columns.push(column(labels, index * n_rows, 1, n_rows));
             }
         } else {
             for index in 0..n_rows.min(MAX_MATRIX_COLUMNS) {
-                let names = vec![format!("{path}({},:)", index + 1)];
-                self.columns.push(column(names, index, n_rows, n_columns));
+                let labels = vec![Label::Name(format!("{path}({},:)", index + 1))];
+                self.columns.push(column(labels, index, n_rows, n_columns));
             }
         }
     }
@@ -141,11 +158,13 @@ impl<'a> Signals<'a> {
                 let Some(values) = signals.field(signal, "values") else { continue };
                 let place = if n_signals == 1 { String::new() } else { format!("({})", signal + 1) };
                 let mut better = match signals.field(signal, "label") {
-                    Some(Value::Text(label)) if !label.trim().is_empty() => vec![label.trim().to_owned()],
+                    Some(Value::Text(label)) if !label.trim().is_empty() => {
+                        vec![Label::Name(label.trim().to_owned())]
+                    }
                     _ => Vec::new(),
                 };
                 if n_signals == 1 {
-                    better.push(before_dot.clone());
+                    better.push(Label::Name(before_dot.clone()));
                 }
                 self.value(values, &format!("{path}.signals{place}.values"), &better);
             }
@@ -159,44 +178,29 @@ impl<'a> Signals<'a> {
             };
             let better = if in_seconds { vec![seconds()] } else { Vec::new() };
             self.value(time, &at("Time"), &better);
-            self.value(data, &at("Data"), &[before_dot]);
+            self.value(data, &at("Data"), &[Label::Name(before_dot)]);
         } else if let (Some(Value::Text(_)), Some(data @ Value::Numbers(_))) = (field("Name"), field("Data")) {
             let (name, unit) = (text("Name"), text("Unit"));
             let mut better = Vec::new();
-            if let (Name::UnitMissing(_), false) = (Name::read(&name), unit.is_empty()) {
-                better.push(format!("{name}_{unit}"));
+            if !name.is_empty() && !unit.is_empty() {
+                better.push(Label::WithUnit { name: name.clone(), unit: unit.clone() });
             }
             let is_axis = path.split('(').next().is_some_and(|path| path.ends_with(".X"));
             if !name.is_empty() {
-                better.push(name);
-            } else if is_axis && Quantity::Time.unit(&unit).is_some() {
-                better.push(format!("{}_{unit}", Quantity::Time));
+                better.push(Label::Name(name));
+            } else if is_axis {
+                better.push(Label::Time { unit });
             }
             self.value(data, &at("Data"), &better);
         } else {
             for (name, value) in structure.fields.iter().zip(structure.elements.get(index).into_iter().flatten()) {
-                self.value(value, &at(name), std::slice::from_ref(name));
-            }
-        }
-    }
-
-    /// Simulink writes the same time beside every signal: one column is enough, under every one of its names.
-    fn drop_equal_times(&mut self) {
-        let is_time = |column: &Column<'_>| column.names.first().is_some_and(|name| *name == seconds());
-        let Some(first) = self.columns.iter().position(is_time) else { return };
-        let later = self.columns.split_off(first + 1);
-        for column in later {
-            let kept = &mut self.columns[first];
-            if is_time(&column) && column.samples().eq(kept.samples()) {
-                kept.names.extend(column.names.into_iter().skip(1));
-            } else {
-                self.columns.push(column);
+                self.value(value, &at(name), &[Label::Name(name.clone())]);
             }
         }
     }
 }
 
-/// The name of a time that is in seconds.
-fn seconds() -> String {
-    format!("{}_s", Quantity::Time)
+/// The label of a time in seconds.
+fn seconds() -> Label {
+    Label::Time { unit: "s".to_owned() }
 }

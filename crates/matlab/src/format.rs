@@ -1,11 +1,11 @@
-//! Which of MATLAB's formats a file is.
+//! Which of MATLAB's formats a file has.
 
 /// Length of the header.
 pub(super) const HEADER_BYTES: usize = 128;
 
 /// Order of the bytes of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Endian {
+pub(super) enum Endian {
     /// Lowest first.
     Little,
     /// Highest first.
@@ -21,29 +21,40 @@ impl Endian {
     }
 }
 
-/// What a file of MATLAB is.
+/// A format of MATLAB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Format {
     /// `save -v4`.
     Level4,
     /// `save -v6` or `save -v7`.
-    Level5(Endian),
+    Level5,
     /// `save -v7.3`.
     Hdf5,
 }
 
-/// The kind of the file that begins with `start`, if it is one of MATLAB's.
-pub(crate) fn kind(start: &[u8]) -> Option<Kind> {
-    if let Some(header) = start.get(..HEADER_BYTES) {
-        // The version, and two letters that show the order of bytes.
-        match header[HEADER_BYTES - 4..] {
-            [0, 1, b'I', b'M'] => return Some(Kind::Level5(Endian::Little)),
-            [1, 0, b'M', b'I'] => return Some(Kind::Level5(Endian::Big)),
-            [0, 2, b'I', b'M'] | [2, 0, b'M', b'I'] => return Some(Kind::Hdf5),
-            _ => {}
-        }
+/// The format of the file that begins with `start`, if it is one of MATLAB's.
+pub fn format_of(start: &[u8]) -> Option<Format> {
+    if level_5(start).is_some() {
+        return Some(Format::Level5);
     }
-    [Endian::Little, Endian::Big].into_iter().any(|endian| is_level_4(start, endian)).then_some(Kind::Level4)
+    if let Some([0, 2, b'I', b'M'] | [2, 0, b'M', b'I']) = version(start) {
+        return Some(Format::Hdf5);
+    }
+    [Endian::Little, Endian::Big].into_iter().any(|endian| is_level_4(start, endian)).then_some(Format::Level4)
+}
+
+/// The order of bytes of a file of level 5, if it is one.
+pub(super) fn level_5(start: &[u8]) -> Option<Endian> {
+    match version(start)? {
+        [0, 1, b'I', b'M'] => Some(Endian::Little),
+        [1, 0, b'M', b'I'] => Some(Endian::Big),
+        _ => None,
+    }
+}
+
+/// The last bytes of a header: the version, and two letters that show the order of bytes.
+fn version(start: &[u8]) -> Option<[u8; 4]> {
+    start.get(..HEADER_BYTES)?.last_chunk().copied()
 }
 
 /// Level 4 has no header: type, rows, columns, whether complex, length of the name; then the name, ended by a zero.
@@ -66,18 +77,20 @@ mod tests {
 
     #[test]
     fn text_is_no_file_of_matlab() {
-        assert_eq!(kind(b"time_s,pressure_kPa,length_mm,force_N\n"), None);
-        assert_eq!(kind(&[b'x'; 200]), None);
-        assert_eq!(kind(b""), None);
+        assert_eq!(format_of(b"time_s,pressure_kPa,length_mm,force_N\n"), None);
+        assert_eq!(format_of(&[b'x'; 200]), None);
+        assert_eq!(format_of(b""), None);
     }
 
     #[test]
     fn the_three_formats_are_told_apart() {
         let level_4 = [0_u32, 3, 1, 0, 2].map(u32::to_le_bytes).concat();
-        assert_eq!(kind(&[level_4.as_slice(), b"p\0"].concat()), Some(Kind::Level4));
+        assert_eq!(format_of(&[level_4.as_slice(), b"p\0"].concat()), Some(Format::Level4));
         let header = |end: &[u8]| [vec![b' '; 124].as_slice(), end].concat();
-        assert_eq!(kind(&header(b"\0\x01IM")), Some(Kind::Level5(Endian::Little)));
-        assert_eq!(kind(&header(b"\x01\0MI")), Some(Kind::Level5(Endian::Big)));
-        assert_eq!(kind(&header(b"\0\x02IM")), Some(Kind::Hdf5));
+        assert_eq!(format_of(&header(b"\0\x01IM")), Some(Format::Level5));
+        assert_eq!(format_of(&header(b"\x01\0MI")), Some(Format::Level5));
+        assert_eq!(format_of(&header(b"\0\x02IM")), Some(Format::Hdf5));
+        assert_eq!(level_5(&header(b"\0\x01IM")), Some(Endian::Little));
+        assert_eq!(level_5(&header(b"\x01\0MI")), Some(Endian::Big));
     }
 }

@@ -8,7 +8,7 @@ use pam_identification::search_space::SearchSpace;
 
 use crate::base;
 use crate::error::DiagnoseError;
-use crate::knocks::{self, Knocks, Residual};
+use crate::knocks::{self, InertialTransient, Residual};
 use crate::nuisance::{self, Nuisance};
 use crate::search::{Found, Limits, search};
 use crate::state::Setting;
@@ -17,7 +17,7 @@ use crate::verdict::Sizes;
 
 /// What a search is made with, but for the track.
 #[derive(Debug)]
-pub struct Question<'a> {
+pub struct DiagnosisProblem<'a> {
     /// Recordings that effects are fitted to.
     pub estimation: &'a [Prepared],
     /// The model that is in question.
@@ -34,18 +34,18 @@ pub struct Question<'a> {
 
 /// What came out.
 #[derive(Debug)]
-pub struct Answer {
+pub struct SearchOutcome {
     /// The recordings, without what knocks touch where a mass was named.
     pub track: Track,
     /// What the search found on it.
     pub found: Found,
     /// A mass that knocks.
-    pub knocks: Option<Knocks>,
+    pub knocks: Option<InertialTransient>,
     /// Sizes that a verdict rests on.
     pub sizes: Sizes,
 }
 
-impl<'a> Question<'a> {
+impl<'a> DiagnosisProblem<'a> {
     /// Whether `estimation` and `model` differ by effects within `limits`.
     pub fn new(estimation: &'a [Prepared], model: &'a ModelArtifact, limits: Limits) -> Self {
         let largest_n_per_m =
@@ -76,10 +76,10 @@ impl<'a> Question<'a> {
     ///
     /// # Errors
     /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit; where they cannot be read back.
-    pub fn answer(&self, track: Track, looked: &dyn Fn()) -> Result<Answer, DiagnoseError> {
+    pub fn answer(&self, track: Track, looked: &dyn Fn()) -> Result<SearchOutcome, DiagnoseError> {
         let (found, sizes) = self.search(&track, &self.limits, looked)?;
         let Some(first) = self.knocks(&found, &sizes, Residual::WithSpeed)? else {
-            return Ok(Answer { track, found, knocks: None, sizes });
+            return Ok(SearchOutcome { track, found, knocks: None, sizes });
         };
         // What knocks leave on the grid around them would hide the rest, and would be taken for something else. The mass itself
         // is known better from them than from what is smooth.
@@ -91,7 +91,7 @@ impl<'a> Question<'a> {
         found.first = first_look;
         let knocks = self.knocks(&found, &sizes, Residual::Explained)?.unwrap_or_else(|| first.within_range());
         let sizes = sizes.with(&knocks);
-        Ok(Answer { track, found, knocks: Some(knocks), sizes })
+        Ok(SearchOutcome { track, found, knocks: Some(knocks), sizes })
     }
 
     /// The search on `track` alone, without the effects `excluded`.
@@ -112,10 +112,15 @@ impl<'a> Question<'a> {
         Ok((found, sizes))
     }
 
-    fn knocks(&self, found: &Found, sizes: &Sizes, residual: Residual) -> Result<Option<Knocks>, DiagnoseError> {
+    fn knocks(
+        &self,
+        found: &Found,
+        sizes: &Sizes,
+        residual: Residual,
+    ) -> Result<Option<InertialTransient>, DiagnoseError> {
         let state = &found.best.state;
         let others = state.terms().into_iter().filter(|term| term.effect.page().id != knocks::ID).collect();
         let explained = AugmentedModel::new(state.model.clone(), others);
-        Ok(Knocks::that_matter(self.estimation, &explained, self.model, &self.limits, sizes, residual)?)
+        Ok(InertialTransient::that_matter(self.estimation, &explained, self.model, &self.limits, sizes, residual)?)
     }
 }

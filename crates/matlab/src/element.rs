@@ -1,6 +1,6 @@
 //! Elements: a tag and its data.
 
-use super::version::Endian;
+use super::format::Endian;
 
 /// Type of an element that is an array.
 pub(super) const MATRIX: u32 = 14;

@@ -1,7 +1,7 @@
 //! Arrays: numbers, text, structures and cells.
 
 use super::element::{Damaged, Element, Elements, MATRIX};
-use super::version::Endian;
+use super::format::Endian;
 
 /// Arrays within arrays that are followed.
 const MAX_DEPTH: usize = 32;
