@@ -5,7 +5,7 @@ use pam_core::artifact::diagnosis::{
     Candidate, DiagnoseConfig, Empirical, Implausible, Isolability, NamedEffect, NextExperiment, Region, Verdict,
 };
 use pam_core::artifact::model::EffectEntry;
-use pam_core::effects::{AugmentedModel, Effect};
+use pam_core::effects::{AugmentedModel, Effect, Term};
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
 use pam_identification::evaluate::{evaluate, noise_floor_n};
@@ -25,10 +25,10 @@ use crate::own;
 use crate::places::{regions, structured, telling};
 use crate::plausible::implausible;
 use crate::question::{Answer, Question};
+use crate::rig;
 use crate::search::Limits;
 use crate::short;
 use crate::stand_ins;
-use crate::track::Track;
 use crate::uncertainty::{Uncertainty, correlated_instants};
 use crate::verdict::{Sizes, verdict};
 use crate::veto;
@@ -46,6 +46,8 @@ pub struct Request {
     pub config: DiagnoseConfig,
     /// Effects of a user's own, considered beside those of the catalogue.
     pub effects: Vec<&'static dyn Effect>,
+    /// Effects of the rig that are known from elsewhere: they are in, and not looked for again.
+    pub rig: Vec<Term>,
     /// Go on where an instrument fault is suspected.
     pub accept_implausible: bool,
 }
@@ -116,9 +118,9 @@ pub const MAX_EFFECTS: usize = 4;
 /// # Errors
 /// [`DiagnoseError`] names the recording and the remedy.
 pub fn check(request: Request) -> Result<(), DiagnoseError> {
-    let Request { estimation, holdout, model, config, effects, accept_implausible } = request;
+    let Request { estimation, holdout, model, config, effects, rig, accept_implausible } = request;
     let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
-    let track = Track::of(&estimation, model.direction, &model.force_model())?;
+    let track = rig::track(&estimation, &model, &rig)?;
     check::long_enough(&track, &estimation)?;
     let limits = limits(&config, effects, &model, &estimation, false)?;
     given(&Question::new(&estimation, &model, limits), &holdout, accept_implausible).map(|_| ())
@@ -134,7 +136,7 @@ fn given(question: &Question<'_>, holdout: &[Prepared], accept_implausible: bool
 }
 
 /// The floor is that of the sensors that made `estimation`, which need not be those that the model was identified with.
-fn limits(
+pub(crate) fn limits(
     config: &DiagnoseConfig,
     own: Vec<&'static dyn Effect>,
     model: &ModelArtifact,
@@ -164,9 +166,9 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
 /// # Errors
 /// As [`diagnose`].
 pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Result<Diagnosis, DiagnoseError> {
-    let Request { estimation, holdout, mut model, config, effects: own, accept_implausible } = request;
+    let Request { estimation, holdout, mut model, config, effects: own, rig, accept_implausible } = request;
     let (mut estimation, mut holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
-    let mut track = Track::of(&estimation, model.direction, &model.force_model())?;
+    let mut track = rig::track(&estimation, &model, &rig)?;
     check::long_enough(&track, &estimation)?;
     let limits = limits(&config, own, &model, &estimation, !holdout.is_empty())?;
     let mut given = given(&Question::new(&estimation, &model, limits.clone()), &holdout, accept_implausible)?;
@@ -185,7 +187,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         model.direction.standstill = standstill;
         redirect(&mut estimation, model.direction, model.form)?;
         redirect(&mut holdout, model.direction, model.form)?;
-        track = Track::of(&estimation, model.direction, &model.force_model())?;
+        track = rig::track(&estimation, &model, &rig)?;
         let other = Question::new(&estimation, &model, limits.clone()).answer(track, &advance)?;
         let left = |answer: &Answer| answer.found.best.held_out.mean_square();
         if left(&other) >= left(&answer) {
@@ -198,7 +200,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     }
     let question = Question::new(&estimation, &model, limits);
     let Answer { track, mut found, knocks, mut sizes } = answer;
-    let held = (!holdout.is_empty()).then(|| Track::of(&holdout, model.direction, &model.force_model())).transpose()?;
+    let held = (!holdout.is_empty()).then(|| rig::track(&holdout, &model, &rig)).transpose()?;
     if let Some(held) = held.as_ref().filter(|_| knocks.is_none()) {
         found = veto::confirmed(&question, &track, found, held)?;
         sizes = Sizes::of(&found, &question.limits);
@@ -218,7 +220,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     if !too_short.is_empty() && knocks.is_none() {
         sizes = Sizes::of(&found, &question.limits);
     }
-    given.beside_effects(&question, &track, &found);
+    given.beside_effects(&question, &track, &found, !rig.is_empty());
     let space = &question.space;
     observer(steps - 1, steps);
     let verdict = verdict(&found, &sizes, knocks.is_some());
@@ -268,7 +270,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
-    let augmented = AugmentedModel::new(state.model.clone(), terms);
+    entries.splice(0..0, rig.iter().map(rig::entry));
+    let augmented = AugmentedModel::new(state.model.clone(), rig.into_iter().chain(terms).collect());
     for prepared in estimation.iter_mut().chain(&mut holdout) {
         prepared.begin(augmented.base(), model.direction.standstill)?;
     }

@@ -1,0 +1,104 @@
+//! Muscles of one rig together, as a person meets it: what the rig does is named once, for all of them.
+
+#![expect(clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
+
+mod desk;
+
+use std::sync::OnceLock;
+
+use pam_core::artifact::GroupArtifact;
+use pam_core::artifact::group::Says;
+use pam_virtual_bench::{Concealed, Parameters};
+
+use desk::{Desk, logs};
+
+const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-group-1.json");
+
+/// Muscles, and how each differs from the nominal one.
+const MUSCLES: [(&str, fn(&mut Parameters)); 3] = [
+    ("soft", |parameters| parameters.c10_pa *= 0.8),
+    ("nominal", |_| {}),
+    ("stiff", |parameters| parameters.c10_pa *= 1.2),
+];
+
+/// A rig with three muscles; in all of them `concealed`.
+fn rig(concealed: &[Concealed]) -> Desk {
+    let desk = Desk::empty();
+    let mut text = String::new();
+    for (index, (name, set)) in MUSCLES.into_iter().enumerate() {
+        desk.record(name, concealed, None, 1 + 10 * index as u64, set);
+        desk.identify(name, &format!("{name}.json"));
+        let logs = logs(name).replace(' ', "\", \"");
+        text += &format!("[[muscle]]\nname = \"{name}\"\nmodel = \"{name}.json\"\nlogs = [\"{logs}\"]\n");
+    }
+    std::fs::write(desk.path("rig.toml"), text).unwrap();
+    desk
+}
+
+fn plain() -> &'static Desk {
+    static DESK: OnceLock<Desk> = OnceLock::new();
+    DESK.get_or_init(|| rig(&[]))
+}
+
+fn found(desk: &Desk, arguments: &str) -> GroupArtifact {
+    let output = desk.run(&format!("--group rig.toml --out - {arguments}"));
+    assert_ne!(output.status.code(), Some(2), "{output:?}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn nothing_is_said_of_a_rig_that_does_nothing() {
+    let found = found(plain(), "");
+    assert!(found.rig.is_empty(), "{}", found.statement);
+    assert!(found.muscles.iter().all(|muscle| muscle.effects.is_empty()), "{}", found.statement);
+    assert!(found.statement.starts_with("The 3 muscles together show no effect of the rig."), "{}", found.statement);
+}
+
+#[test]
+fn a_delay_of_the_rig_is_named_once_with_one_value_for_all_muscles() {
+    let desk = rig(&[Concealed::new("channel-delay", 1.0)]);
+    let found = found(&desk, "");
+    let ids: Vec<&str> = found.rig.iter().map(|effect| effect.id.as_str()).collect();
+    assert_eq!(ids, ["channel-delay"], "{}", found.statement);
+    assert!(found.rig[0].muscles.iter().filter(|one| one.says == Says::Shows).count() >= 2, "{}", found.statement);
+    assert!(found.muscles.iter().all(|muscle| muscle.effects.is_empty()), "{}", found.statement);
+    for muscle in &found.muscles {
+        assert!(muscle.estimation.together_n < muscle.estimation.base_n, "{muscle:?}");
+    }
+}
+
+#[test]
+fn a_group_gives_the_same_bytes_on_any_number_of_threads() {
+    let bytes = |threads: &str| plain().run(&format!("--group rig.toml --out - --threads {threads}")).stdout;
+    let one = bytes("1");
+    assert!(!one.is_empty() && one == bytes("2"));
+}
+
+#[test]
+fn a_group_that_cannot_be_is_refused_with_the_remedy_and_leaves_no_file() {
+    let desk = plain();
+    let text = std::fs::read_to_string(desk.path("rig.toml")).unwrap();
+    let refused = |text: &str, arguments: &str, words: &str| {
+        std::fs::write(desk.path("other.toml"), text).unwrap();
+        let output = desk.run(&format!("{arguments} --group other.toml --out refused.json"));
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(words), "{message}");
+        assert!(!desk.path("refused.json").exists());
+    };
+    refused(&text, "soft-minor-loops.csv", "give none on the command line");
+    refused("", "", "other.toml: it has 0 [[muscle]]; a group has 2 muscles of one rig at least");
+    refused(&text.replace("\"stiff\"", "\"soft\""), "", "two muscles are called \"soft\"");
+    std::fs::copy(desk.path("soft-minor-loops.csv"), desk.path("copy.csv")).unwrap();
+    refused(&text.replace("stiff-minor-loops.csv", "copy.csv"), "", "is the same recording as soft-minor-loops.csv");
+    refused(&text.replace("logs", "files"), "", "unknown field `files`");
+}
+
+#[test]
+fn the_schema_is_published_and_obeyed() {
+    let output = plain().run("--schema=group");
+    assert!(output.stdout == SCHEMA.as_bytes(), "the published schema is stale; run scripts/schemas");
+    let artifact = serde_json::to_value(found(plain(), "")).unwrap();
+    jsonschema::validate(&serde_json::from_str(SCHEMA).unwrap(), &artifact).unwrap();
+    assert_eq!(artifact["schema"], "pam-group/1");
+}

@@ -1,0 +1,79 @@
+//! What a group says in words.
+
+use std::collections::BTreeMap;
+
+use pam_core::artifact::group::{GroupMuscle, RigEffect, Says};
+
+/// What was found, in one paragraph: the rig, then what muscles have of their own.
+pub(super) fn statement(rig: &[RigEffect], muscles: &[GroupMuscle]) -> String {
+    let mut sentences = Vec::new();
+    if rig.is_empty() {
+        sentences.push(format!("The {} muscles together show no effect of the rig.", muscles.len()));
+    }
+    for effect in rig {
+        sentences.push(of_the_rig(effect));
+    }
+    let mut own: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for muscle in muscles {
+        for effect in &muscle.effects {
+            own.entry(&effect.id).or_default().push(&muscle.name);
+        }
+    }
+    for (id, names) in own {
+        sentences.push(format!("{}: {id}.", names.join(", ")));
+    }
+    sentences.join(" ")
+}
+
+fn of_the_rig(effect: &RigEffect) -> String {
+    let of = |says: Says| -> Vec<&str> {
+        effect.muscles.iter().filter(|one| one.says == says).map(|one| one.muscle.as_str()).collect()
+    };
+    let shown = of(Says::Shows);
+    let mut sentence = format!("The rig has {}: {} show it", effect.id, shown.join(", "));
+    if !effect.alternatives.is_empty() {
+        sentence.push_str(&format!(" (or {})", effect.alternatives.join(", ")));
+    }
+    for (says, words) in [
+        (Says::Differs, "has a value of its own in"),
+        (Says::CannotShow, "cannot be seen in"),
+        (Says::Denies, "is not there in"),
+    ] {
+        let names = of(says);
+        if !names.is_empty() {
+            sentence.push_str(&format!("; it {words} {}", names.join(", ")));
+        }
+    }
+    sentence + "."
+}
+
+/// What a person should know.
+pub(super) fn warnings(rig: &[RigEffect], muscles: &[GroupMuscle]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for effect in rig {
+        for one in &effect.muscles {
+            match one.says {
+                Says::Differs => warnings.push(format!(
+                    "{}: {} differs from what the other muscles share; look at what was changed on the rig for it",
+                    one.muscle, effect.id
+                )),
+                Says::Denies => warnings.push(format!(
+                    "{}: its recordings speak against {}, which other muscles show; was it on the same rig?",
+                    one.muscle, effect.id
+                )),
+                Says::Shows | Says::CannotShow => {}
+            }
+        }
+    }
+    for muscle in muscles {
+        if let Some(holdout) = muscle.holdout
+            && holdout.together_n > 1.1 * holdout.alone_n.max(holdout.noise_floor_n)
+        {
+            warnings.push(format!(
+                "{}: what the muscles share leaves {:.2} N of what was held out, its own diagnosis {:.2} N",
+                muscle.name, holdout.together_n, holdout.alone_n
+            ));
+        }
+    }
+    warnings
+}
