@@ -141,6 +141,7 @@ class Base:
     friction_n: float  # while contracting; a loss
     latex_n: float  # a bladder of latex, C10 + C01 = 0.22 MPa
     slope_n_per_pa: float = 0.0  # of the force without friction; for effects that use it
+    slope_n_per_m: float = 0.0
 
 
 @dataclasses.dataclass
@@ -538,6 +539,142 @@ class StaticMap:
         return force_n
 
 
+def spelled(part):
+    """Name and numbers of a part of a sentence, which is a name alone where it has no numbers."""
+    return (part, {}) if isinstance(part, str) else next(iter(part.items()))
+
+
+class Empirical:
+    """A term without a name in physics: a driver, what is remembered of it, a curve of that, a factor. An effect of a user's own
+    file stands in a model in the same way."""
+
+    SCALES = {
+        "one": lambda now, base: 1.0,
+        "pressure": lambda now, base: now.pressure_pa,
+        "gas-force": lambda now, base: base.gas_n,
+        "bladder-force": lambda now, base: base.latex_n,
+        "friction": lambda now, base: now.direction * base.normal_n,
+        "direction": lambda now, base: now.direction,
+        "contracting": lambda now, base: 0.5 * (1.0 + now.direction),
+        "extending": lambda now, base: 0.5 * (1.0 - now.direction),
+        "slope-over-pressure": lambda now, base: base.slope_n_per_pa,
+        "slope-over-length": lambda now, base: base.slope_n_per_m,
+    }
+
+    def __init__(self, sentence, values):
+        (self.driver, self.limits), (self.memory, self.numbers) = spelled(sentence["driver"]), spelled(sentence["memory"])
+        (self.shape, self.places), self.seen = spelled(sentence["shape"]), sentence["seen"]
+        if sentence["scale"] not in self.SCALES:
+            raise ValueError(f"scale {sentence['scale']!r} is unknown here; take pam_muscle.py of the pam-export that knows it")
+        self.scale = self.SCALES[sentence["scale"]]
+        self.uses_slopes = sentence["scale"].startswith("slope-over-")
+        # Amplitudes of a curve with knots are numbered: rise_1, rise_2, ...
+        numbered = sorted(values, key=lambda name: int(name.rpartition("_")[2]) if "_" in name else 0)
+        self.amplitudes = [values[name] for name in numbered]
+        self.started, self.direction, self.turn_m, self.flips, self.moved_s = False, 0.0, 0.0, 0, 0.0
+        self.last, self.last_s, self.last_m, self.first, self.second = 0.0, 0.0, 0.0, 0.0, 0.0
+
+    def pulls(self, now, base):
+        value = float(self.driven(now, base))
+        argument = float(self.remembered(value, now, base))
+        self.started = True
+        low, high = self.seen
+        beyond = max(low - argument, argument - high, 0.0)
+        weight = max(1.0 - beyond / (0.1 * (high - low)), 0.0)
+        return weight * self.scale(now, base) * self.curve(min(max(argument, low), high))
+
+    def driven(self, now, base):
+        """What drives the term."""
+        if self.driver in ("travel-since-reversal", "cycle"):
+            if not self.started or now.direction != self.direction:
+                self.flips += self.direction != 0.0
+                self.direction, self.turn_m = now.direction, now.slide_m
+            return abs(now.slide_m - self.turn_m) if self.driver != "cycle" else 1.0 + self.flips // 2
+        if self.driver in ("time-since-last-move", "time-since-pressure-moved"):
+            moves = abs(now.pressure_rate_pa_per_s) > self.limits["above_pa_per_s"]
+            moves = moves or abs(now.speed_m_per_s) > self.limits.get("above_m_per_s", math.inf)
+            if not self.started or moves:
+                self.moved_s = now.time_s
+            return now.time_s - self.moved_s
+        return {
+            "pressure": now.pressure_pa,
+            "contraction": now.contraction_ratio,
+            "speed": now.speed_m_per_s,
+            "force": base.static_n,
+            "time": now.time_s,
+        }[self.driver]
+
+    def remembered(self, value, now, base):
+        """What is remembered of the driver, which has come to `value`."""
+        if not self.started:
+            self.last, self.last_s, self.last_m = value, now.time_s, now.length_m
+            came = now.direction if now.came else 0.0
+            settled = {"play": value - came * self.numbers.get("half_width", 0.0), "largest": value, "dahl": came}
+            self.first = settled.get(self.memory, 0.0)
+        change = value - self.last
+        elapsed_s = now.step_s if now.step_s > 0.0 else max(now.time_s - self.last_s, 0.0)
+        elapsed_s = elapsed_s if self.started else 0.0
+        travelled_m = abs(now.length_m - self.last_m)
+        self.last, self.last_s, self.last_m = value, now.time_s, now.length_m
+        if self.memory == "none":
+            return value
+        if self.memory == "lag":
+            self.first = self.fallen(self.first, change, elapsed_s / self.numbers["time_constant_s"])
+        elif self.memory == "two-lags":
+            first_s, second_s = self.numbers["time_constants_s"]
+            before = value - change - self.first
+            self.first = self.fallen(self.first, change, elapsed_s / first_s)
+            self.second = self.fallen(self.second, value - self.first - before, elapsed_s / second_s)
+            return self.first + self.second
+        elif self.memory == "play":
+            half_width = self.numbers["half_width"]
+            self.first = min(max(self.first, value - half_width), value + half_width)
+            return value - self.first
+        elif self.memory == "dahl":
+            if change != 0.0:
+                sign = math.copysign(1.0, change)
+                self.first = sign + (self.first - sign) * math.exp(-abs(change) / self.numbers["distance"])
+        elif self.memory == "largest":
+            self.first = max(self.first, value)
+            return self.first - value
+        elif self.memory == "travelled":
+            self.first += abs(change)
+        elif self.memory == "work":
+            self.first += abs(base.static_n) * travelled_m
+        else:
+            raise ValueError(f"memory {self.memory!r} is unknown here; take pam_muscle.py of the pam-export that knows it")
+        return self.first
+
+    @staticmethod
+    def fallen(missing, change, ratio):
+        """What has not followed after `ratio` time constants in which the driver changed evenly by `change`."""
+        gain = -math.expm1(-ratio) / ratio if ratio > 1e-9 else 1.0
+        return missing * math.exp(-ratio) + change * gain
+
+    def curve(self, x):
+        """How the term answers."""
+        if self.shape == "line":
+            return self.amplitudes[0] * x
+        if self.shape == "saturation":
+            away = x - self.places["from"]
+            return -math.copysign(1.0, away) * math.expm1(-abs(away) / self.places["over"]) * self.amplitudes[0]
+        if self.shape == "bump":
+            return math.exp(-(((x - self.places["center"]) / self.places["width"]) ** 2)) * self.amplitudes[0]
+        knots, values = self.places["knots"], self.amplitudes
+        if self.shape == "monotone":
+            steps = zip(values, knots, knots[1:])
+            return sum(rise * min(max((x - left) / (right - left), 0.0), 1.0) for rise, left, right in steps)
+        # Cubic Hermite; the slope at a knot is that from the knot before to the knot after.
+        right = min(max(sum(knot <= x for knot in knots), 1), len(knots) - 1)
+        left, before, after = right - 1, max(right - 2, 0), min(right + 1, len(knots) - 1)
+        width = knots[right] - knots[left]
+        t = min(max((x - knots[left]) / width, 0.0), 1.0)
+        left_slope = (values[right] - values[before]) / (knots[right] - knots[before])
+        right_slope = (values[after] - values[left]) / (knots[after] - knots[left])
+        through = (2.0 * t**3 - 3.0 * t**2 + 1.0) * values[left] + (3.0 * t**2 - 2.0 * t**3) * values[right]
+        return through + width * ((t**3 - 2.0 * t**2 + t) * left_slope + (t**3 - t**2) * right_slope)
+
+
 EFFECTS = {
     "channel-delay": ChannelDelay,
     "pressure-gauge-hysteresis": PressureGaugeHysteresis,
@@ -573,6 +710,7 @@ class Memory:
     def __init__(self, muscle):
         self.eq11 = muscle.eq11
         self.effects = [EFFECTS[id](values, muscle.eq11) for id, values in muscle.effects]
+        self.effects += [Empirical(sentence, values) for sentence, values in muscle.empirical]
         self.uses_slopes = any(getattr(effect, "uses_slopes", False) for effect in self.effects)
 
     def step(self, moment):
@@ -587,6 +725,8 @@ class Memory:
         if self.uses_slopes:
             above, below = (self.eq11.base(now.pressure_pa + step_pa, now.length_m) for step_pa in (100.0, -100.0))
             base.slope_n_per_pa = (above.static_n - below.static_n) / 200.0
+            longer, shorter = (self.eq11.base(now.pressure_pa, now.length_m + step_m) for step_m in (1e-5, -1e-5))
+            base.slope_n_per_m = (longer.static_n - shorter.static_n) / 2e-5
         force_n = base.static_n - slide * base.friction_n
         for effect in self.having("pulls"):
             force_n += effect.pulls(now, base)
@@ -606,14 +746,17 @@ class Muscle:
         if model.get("schema") != "pam-model/1":
             raise ValueError(f"schema is {model.get('schema')!r}, expected 'pam-model/1'; write it with pam-identify")
         self.model, self.eq11 = model, Eq11(model)
-        self.effects = []
+        self.effects, self.empirical = [], []
         for entry in model["effects"]:
             if entry["id"] in EVENTS:
                 continue
-            if entry["id"] not in EFFECTS:
-                raise ValueError(f"effect {entry['id']!r} is unknown here; take pam_muscle.py of the pam-export that knows it")
             values = {parameter["name"]: parameter["value"] for parameter in entry["parameters"]}
-            self.effects.append((entry["id"], values))
+            if entry["id"] == "empirical":
+                self.empirical.append((entry["sentence"], values))
+            elif entry["id"] in EFFECTS:
+                self.effects.append((entry["id"], values))
+            else:
+                raise ValueError(f"effect {entry['id']!r} is unknown here; take pam_muscle.py of the pam-export that knows it")
 
     @classmethod
     def read(cls, path):
@@ -665,7 +808,7 @@ class Muscle:
 
     def along(self, moments, has_force):
         """Force at every moment of one recording; without a measured force, effects see the model's own of the row before."""
-        if not self.effects:
+        if not self.effects and not self.empirical:
             columns = [np.array([getattr(now, name) for now in moments])
                        for name in ("pressure_pa", "length_m", "direction")]  # fmt: skip
             return self.force_n(*columns)

@@ -2,7 +2,7 @@
 
 use std::process::{Command, Output};
 
-use crate::desk::{Desk, column, effects, has_c, model, python};
+use crate::desk::{Desk, cases, column, effects, has_c, model, python, touching_guard};
 use pam_core::artifact::{InverseArtifact, ModelArtifact};
 use pam_core::effects::Effect;
 use pam_inverse_model::InverseNetwork;
@@ -35,9 +35,7 @@ fn c_agrees_with_the_model_on_every_effect_along_a_recording() {
     }
     let desk = Desk::new();
     desk.recording("multisine.csv", 3000);
-    let all: Vec<&dyn Effect> = effects().collect();
-    let one_by_one = effects().map(|effect| (effect.page().id.replace('-', "_"), vec![effect]));
-    for (name, effects) in one_by_one.chain([("plain".to_owned(), vec![]), ("all".to_owned(), all)]) {
+    for (name, effects) in cases() {
         desk.write("model.json", &model(&effects));
         desk.exported(&format!("multisine.csv --model model.json --c {name}.h --vectors vectors.csv --quiet"));
         compile(&desk, &name);
@@ -48,6 +46,40 @@ fn c_agrees_with_the_model_on_every_effect_along_a_recording() {
             assert!(said.starts_with(&format!("force: {n} instants")), "{name}: {said}");
             assert!(largest(&output, "force") <= TOLERANCE_N, "{name}: {said}");
         }
+    }
+}
+
+#[test]
+fn empirical_terms_of_the_test_pull_and_fade() {
+    let desk = Desk::new();
+    desk.recording("multisine.csv", 1500);
+    let forces_n = |effects: &[&dyn Effect], log: &str| {
+        desk.write("model.json", &model(effects));
+        desk.exported(&format!("{log}--model model.json --vectors vectors.csv --quiet"));
+        column(&desk.read("vectors.csv"), "force_model_n")
+    };
+    let mut n_fading = 0;
+    for (name, effects) in cases().into_iter().filter(|(name, _)| name.starts_with("term_") || name.contains("guard")) {
+        let mut differing = 0.0_f64;
+        for log in ["multisine.csv ", ""] {
+            let (plain_n, with_n) = (forces_n(&[], log), forces_n(&effects, log));
+            let n_pulling = plain_n.iter().zip(&with_n).filter(|(plain, with)| plain != with).count();
+            differing = differing.max(n_pulling as f64 / plain_n.len() as f64);
+            n_fading += usize::from(n_pulling > 0 && n_pulling < plain_n.len());
+        }
+        assert!(differing > 0.1, "{name} pulls at {differing} of the instants");
+    }
+    assert!(n_fading > 5, "{n_fading}");
+}
+
+#[test]
+fn an_effect_of_ones_own_stands_in_the_header_under_its_equation() {
+    let desk = Desk::new();
+    desk.write("model.json", &model(&[touching_guard()]));
+    desk.exported("--model model.json --c muscle.h --quiet");
+    let header = desk.read("muscle.h");
+    for expected in ["/* empirical term: F = ", "MUSCLE_EMPIRICAL_1_HEIGHT ", "muscle_sentence_bump(x, 0.11, 0.02)"] {
+        assert!(header.contains(expected), "{expected}: {header}");
     }
 }
 
@@ -148,13 +180,11 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
     desk.recording("multisine.csv", 1500);
     desk.write("model.json", &model(&[]));
     desk.exported("--model model.json --python pam_muscle.py --quiet");
-    let all: Vec<&dyn Effect> = effects().collect();
-    let one_by_one = effects().map(|effect| (effect.page().id.to_owned(), vec![effect]));
-    let mut cases = Vec::new();
-    for (name, effects) in one_by_one.chain([("plain".to_owned(), vec![]), ("all".to_owned(), all)]) {
+    let mut logs = Vec::new();
+    for (name, effects) in cases() {
         desk.write(&format!("{name}.json"), &model(&effects));
         desk.exported(&format!("multisine.csv --model {name}.json --vectors {name}.vectors.csv --quiet"));
-        cases.push((name, "multisine.csv".to_owned()));
+        logs.push((name, "multisine.csv".to_owned()));
     }
     // Turns, rests, steps and ramps; one with a gap, one without a force.
     for log in ["isobaric-triangles", "isometric-ramps", "length-steps", "minor-loops", "lift"] {
@@ -167,16 +197,16 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
     let without: Vec<&str> = gap.lines().map(|line| line.rsplit_once(',').unwrap().0).collect();
     desk.write("no-force.csv", &without.join("\n"));
     for log in ["isobaric-triangles", "isometric-ramps", "length-steps", "minor-loops", "lift", "gap", "no-force"] {
-        desk.write(&format!("{log}.json"), &desk.read("presliding-hysteresis.json"));
+        desk.write(&format!("{log}.json"), &desk.read("presliding_hysteresis.json"));
         desk.exported(&format!(
             "{log}.csv --model {log}.json --vectors {log}.vectors.csv --accept-implausible --quiet"
         ));
-        cases.push((log.to_owned(), format!("{log}.csv")));
+        logs.push((log.to_owned(), format!("{log}.csv")));
     }
-    let lines: Vec<String> = cases.iter().map(|(name, log)| format!("{name} {log}")).collect();
+    let lines: Vec<String> = logs.iter().map(|(name, log)| format!("{name} {log}")).collect();
     desk.write("cases.txt", &lines.join("\n"));
     let said = run_python(&desk, &python, include_str!("agreement.py"));
-    assert_eq!(said.lines().count(), cases.len(), "{said}");
+    assert_eq!(said.lines().count(), logs.len(), "{said}");
     for line in said.lines() {
         let words: Vec<&str> = line.split(' ').collect();
         let [step_n, whole_n] = [words[1], words[2]].map(|word| word.parse::<f64>().unwrap());

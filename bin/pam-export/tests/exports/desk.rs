@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use pam_core::effects::sentence::{Curve, Driver, Recall, Scale, Sentence, custom_effects, own};
 use pam_core::effects::{CATALOGUE, Effect, NAMELESS};
 
 /// A model whose every value is known.
@@ -80,6 +81,69 @@ pub(crate) fn effects() -> impl Iterator<Item = &'static dyn Effect> {
     CATALOGUE.iter().chain(NAMELESS).copied()
 }
 
+/// Empirical terms in which every driver, memory, scale and curve of the grammar comes at least once. What they have seen is less
+/// than what the recordings of the tests show, so that they fade on the way.
+pub(crate) fn empirical_terms() -> Vec<&'static dyn Effect> {
+    let moved = |above_m_per_s, above_pa_per_s| Driver::TimeSinceLastMove { above_m_per_s, above_pa_per_s };
+    let bump = |center, width| Curve::Bump { center, width };
+    let spline = |knots: &[f64]| Curve::Spline { knots: knots.to_vec() };
+    let monotone = |knots: &[f64]| Curve::Monotone { knots: knots.to_vec() };
+    let terms = [
+        (Driver::Contraction, Recall::None, Scale::One, bump(0.1, 0.05), [0.05, 0.15]),
+        (
+            Driver::Pressure,
+            Recall::Lag { time_constant_s: 0.3 },
+            Scale::Pressure,
+            Curve::Saturation { from: 5e2, over: 1e4 },
+            [-1e4, 1e4],
+        ),
+        (Driver::Speed, Recall::TwoLags { time_constants_s: [0.05, 0.3] }, Scale::GasForce, Curve::Line, [-0.01, 0.02]),
+        (
+            Driver::Force,
+            Recall::Play { half_width: 10.0 },
+            Scale::BladderForce,
+            monotone(&[-10.0, -5.0, 0.0, 8.0]),
+            [-9.0, 9.0],
+        ),
+        (Driver::Time, Recall::Travelled, Scale::Friction, spline(&[0.0, 0.5, 1.0, 2.0, 3.5]), [0.2, 3.0]),
+        (Driver::TravelSinceReversal, Recall::Dahl { distance: 1e-3 }, Scale::Direction, Curve::Line, [-0.9, 0.8]),
+        (moved(0.02, 2e5), Recall::None, Scale::Contracting, spline(&[0.0, 0.02, 0.05]), [0.0, 0.04]),
+        (
+            Driver::TimeSincePressureMoved { above_pa_per_s: 1e5 },
+            Recall::Largest,
+            Scale::Extending,
+            bump(0.02, 0.05),
+            [0.0, 0.1],
+        ),
+        (Driver::Cycle, Recall::None, Scale::SlopeOverPressure, Curve::Saturation { from: 1.0, over: 2.0 }, [0.0, 6.0]),
+        (Driver::Contraction, Recall::Work, Scale::SlopeOverLength, monotone(&[0.0, 1.0, 5.0, 40.0]), [0.0, 20.0]),
+        (Driver::Contraction, Recall::Largest, Scale::One, spline(&[0.0, 0.1]), [0.0, 0.08]),
+        (Driver::TravelSinceReversal, Recall::None, Scale::One, Curve::Line, [0.0, 0.01]),
+    ];
+    let effect = |(driver, memory, scale, shape, seen)| own(&Sentence { driver, memory, scale, shape, seen }).unwrap();
+    terms.into_iter().map(effect).collect()
+}
+
+/// The effect of `configs/effects/touching-guard.toml` as a model has it: its sentence at a place that was fitted.
+pub(crate) fn touching_guard() -> &'static dyn Effect {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/effects/touching-guard.toml");
+    let guard = custom_effects(&std::fs::read_to_string(path).unwrap()).unwrap()[0];
+    let sentence = guard.sentence_at(&[0.11, 0.02]).unwrap();
+    own(&Sentence { seen: [0.02, 0.13], ..sentence }).unwrap()
+}
+
+/// Names, and effects of a model each: every effect alone, none, and all at once.
+pub(crate) fn cases() -> Vec<(String, Vec<&'static dyn Effect>)> {
+    let mut cases: Vec<(String, Vec<&'static dyn Effect>)> =
+        effects().map(|effect| (effect.page().id.replace('-', "_"), vec![effect])).collect();
+    let terms = empirical_terms();
+    cases.extend(terms.iter().enumerate().map(|(index, term)| (format!("term_{}", index + 1), vec![*term])));
+    cases.push(("touching_guard".to_owned(), vec![touching_guard()]));
+    cases.push(("plain".to_owned(), vec![]));
+    cases.push(("all".to_owned(), effects().chain(terms).collect()));
+    cases
+}
+
 /// The model with `effects` and a law of friction at standstill.
 pub(crate) fn model(effects: &[&dyn Effect]) -> String {
     let mut text = MODEL.to_owned();
@@ -126,7 +190,9 @@ fn entry(effect: &dyn Effect) -> String {
             )
         })
         .collect();
-    format!("{{\"id\": \"{}\", \"parameters\": [{}]}}", effect.page().id, parameters.join(", "))
+    let sentence = effect.sentence_at(&[]).map(|sentence| serde_json::to_string(&sentence).unwrap());
+    let sentence = sentence.map(|sentence| format!("\"sentence\": {sentence}, ")).unwrap_or_default();
+    format!("{{\"id\": \"{}\", {sentence}\"parameters\": [{}]}}", effect.page().id, parameters.join(", "))
 }
 
 /// Values of a column of a CSV file.

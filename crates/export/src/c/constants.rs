@@ -5,13 +5,15 @@ use std::fmt::Write as _;
 
 use pam_core::artifact::ModelArtifact;
 use pam_core::direction::Standstill;
-use pam_core::effects::AugmentedModel;
+use pam_core::effects::Term;
 use pam_core::effects::moment::LATEX_C10_SHARE;
 use pam_core::force::braid::Braid;
 use pam_core::force::strand_friction::POISSON_RATIO;
 use pam_core::force::{ForceModel, Form, Parameter};
 use pam_core::motion::NOISE_PER_THRESHOLD;
 use pam_core::smoothing::HALF_WINDOW_S;
+
+use super::parts::Part;
 
 /// A number as C reads it back to the bit, in brackets so that a sign stays with it.
 pub(super) fn number(value: f64) -> String {
@@ -81,18 +83,20 @@ pub(super) fn of_eq11(model: &ForceModel) -> Vec<(String, f64)> {
     named.map(|(name, value)| (name.to_owned(), value)).into()
 }
 
-/// Parameters of every effect, under its id and their names.
-pub(super) fn of_effects(model: &AugmentedModel) -> Vec<(String, f64)> {
-    let named = model.terms().iter().flat_map(|term| {
+/// Parameters of effects, each under the id of its part and their names.
+pub(super) fn of_effects(parts: &[(Part, &Term)]) -> Vec<(String, f64)> {
+    let named = parts.iter().flat_map(|(part, term)| {
         let shapes = term.effect.shape().iter().map(|shape| shape.name);
         let names = shapes.chain(term.effect.amplitudes().iter().map(|amplitude| amplitude.name));
         let values = term.shape.iter().chain(&term.amplitudes);
-        names.zip(values).map(|(name, value)| {
-            let id = term.effect.page().id;
-            (format!("{id}_{name}").replace('-', "_").to_uppercase(), *value)
-        })
+        names.zip(values).map(|(name, value)| (parameter(&part.id, name), *value))
     });
     named.collect()
+}
+
+/// Name of a parameter in C, without its prefix.
+pub(super) fn parameter(id: &str, name: &str) -> String {
+    format!("{id}_{name}").replace('-', "_").to_uppercase()
 }
 
 /// Thresholds of the direction, for kinematics without the future.

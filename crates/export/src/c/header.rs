@@ -10,6 +10,7 @@ use pam_inverse_model::InverseNetwork;
 use super::constants::{defines, of_direction, of_effects, of_eq11};
 use super::inverse;
 use super::parts::{EQ11, MOMENT, OBSERVER, Part, Shared};
+use super::sentence;
 use crate::ExportError;
 
 /// What a header is made of.
@@ -71,7 +72,7 @@ pub fn header(path: &Path, content: &Header<'_>) -> Result<String, ExportError> 
     text.push_str(&defines(&of_eq11(content.model.base())));
     if !parts.is_empty() {
         text.push_str("\n/* Parameters of the effects, in SI. */\n");
-        text.push_str(&defines(&of_effects(content.model)));
+        text.push_str(&defines(&of_effects(&parts)));
     }
     text.push_str("\n/* Thresholds of the direction of motion. */\n");
     text.push_str(&defines(&of_direction(content.artifact, content.model.base())));
@@ -87,7 +88,9 @@ pub fn header(path: &Path, content: &Header<'_>) -> Result<String, ExportError> 
     }
     for (part, term) in &parts {
         let page = term.effect.page();
-        let _ = writeln!(text, "\n/* {}: {} */\n{}", page.name, in_comment(page.equation), part.text.trim_end());
+        let sentence = term.effect.sentence_at(&term.shape).map(|sentence| sentence.equation());
+        let equation = in_comment(sentence.as_deref().unwrap_or(page.equation));
+        let _ = writeln!(text, "\n/* {}: {equation} */\n{}", page.name, part.text.trim_end());
     }
     text.push('\n');
     text.push_str(&state(&parts));
@@ -104,14 +107,18 @@ pub fn header(path: &Path, content: &Header<'_>) -> Result<String, ExportError> 
 }
 
 /// The effects that are forces, in the order of the model, each with its part.
-fn parts_of(model: &AugmentedModel) -> Result<Vec<(&'static Part, &Term)>, ExportError> {
+fn parts_of(model: &AugmentedModel) -> Result<Vec<(Part, &Term)>, ExportError> {
     let forces = model.terms().iter().filter(|term| term.effect.role() != Role::Shift);
-    forces
-        .map(|term| {
-            let id = term.effect.page().id;
-            Part::of(id).map(|part| (part, term)).ok_or_else(|| ExportError::UnknownEffect { id: id.to_owned() })
-        })
-        .collect()
+    let mut n_empirical = 0;
+    let mut part_of = |term: &Term| -> Result<Part, ExportError> {
+        if let Some(sentence) = term.effect.sentence_at(&term.shape) {
+            n_empirical += 1;
+            return Ok(sentence::part(n_empirical, &sentence, term.effect.amplitudes()));
+        }
+        let id = term.effect.page().id;
+        Part::of(id).cloned().ok_or_else(|| ExportError::UnknownEffect { id: id.to_owned() })
+    };
+    forces.map(|term| Ok((part_of(term)?, term))).collect()
 }
 
 /// What stands at the top of the file.
@@ -155,7 +162,7 @@ fn in_comment(text: &str) -> String {
     text.replace("*/", "* /").replace("/*", "/ *")
 }
 
-fn state(parts: &[(&Part, &Term)]) -> String {
+fn state(parts: &[(Part, &Term)]) -> String {
     let mut text = "/* What the muscle remembers; all zeros before its first instant, which finds it settled. */\ntypedef struct {\n    \
                     double force_n; /* at the last step */\n    int stepped;\n"
         .to_owned();
@@ -170,16 +177,20 @@ fn state(parts: &[(&Part, &Term)]) -> String {
     text
 }
 
-fn step(parts: &[(&Part, &Term)]) -> String {
+fn step(parts: &[(Part, &Term)]) -> String {
     let calls = |role: Role| -> String {
         let of_role = parts.iter().filter(|(_, term)| term.effect.role() == role);
         of_role.map(|(part, _)| part.call(role)).collect()
     };
-    let slopes = if parts.iter().any(|(part, _)| part.needs.contains(&Shared::Slopes)) {
-        "    base.slope_n_per_pa = pam_slope_n_per_pa(now.pressure_pa, now.length_m);\n"
-    } else {
-        ""
+    let slope = |shared: Shared, name: &str| {
+        let is_needed = parts.iter().any(|(part, _)| part.needs.contains(&shared));
+        if is_needed {
+            format!("    base.{name} = pam_{name}(now.pressure_pa, now.length_m);\n")
+        } else {
+            String::new()
+        }
     };
+    let slopes = slope(Shared::Slopes, "slope_n_per_pa") + &slope(Shared::LengthSlope, "slope_n_per_m");
     format!(
         "/* Force, in N, at the next instant. */\n\
          static inline double pam_step(pam_state *state, const pam_moment *moment)\n{{\n    \
@@ -241,7 +252,7 @@ static inline double pam_own_force_n(const pam_state *state, const pam_moment *n
 }
 ";
 
-fn settled(parts: &[(&Part, &Term)]) -> String {
+fn settled(parts: &[(Part, &Term)]) -> String {
     let sees = parts.iter().any(|(_, term)| term.effect.role() == Role::Sees);
     let body = if sees { SECANT } else { "    return pam_settled_at(pressure_pa, length_m, direction, 0.0);\n" };
     format!("{SETTLED}{body}}}\n{OWN}")

@@ -8,6 +8,7 @@ mod constants;
 mod header;
 mod inverse;
 mod parts;
+mod sentence;
 
 pub use check::check_program;
 pub use header::{Header, header, prefix};

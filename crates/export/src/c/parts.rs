@@ -1,5 +1,7 @@
 //! Parts of the header: C with the prefix `pam_` for names and `PAM_` for constants.
 
+use std::borrow::Cow;
+
 use pam_core::effects::Role;
 
 pub(super) const MOMENT: &str = include_str!("templates/moment.h");
@@ -19,27 +21,33 @@ pub(super) enum Shared {
     Overstress,
     /// Slope of eq. 11 over the pressure.
     Slopes,
+    /// Slope of eq. 11 over the length.
+    LengthSlope,
+    /// Drivers, memories and curves of empirical terms.
+    Sentence,
 }
 
 impl Shared {
-    pub(super) const ALL: [Self; 3] = [Self::Slip, Self::Overstress, Self::Slopes];
+    pub(super) const ALL: [Self; 5] = [Self::Slip, Self::Overstress, Self::Slopes, Self::LengthSlope, Self::Sentence];
 
     pub(super) fn text(self) -> &'static str {
         match self {
             Self::Slip => include_str!("templates/slip.h"),
             Self::Overstress => include_str!("templates/prony.h"),
             Self::Slopes => SLOPES,
+            Self::LengthSlope => include_str!("templates/length_slope.h"),
+            Self::Sentence => include_str!("templates/sentence.h"),
         }
     }
 }
 
 /// An effect in C.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Part {
-    /// Id in the catalogue.
-    pub(super) id: &'static str,
+    /// Id in the catalogue; `empirical-1` and so on for terms without a name.
+    pub(super) id: Cow<'static, str>,
     /// Its functions, and its memory where it has one.
-    pub(super) text: &'static str,
+    pub(super) text: Cow<'static, str>,
     /// Arguments of its function.
     pub(super) arguments: &'static [Argument],
     /// What it rests on.
@@ -64,8 +72,8 @@ use Argument::{Base, Force, Memory, Now};
 macro_rules! part {
     ($id:literal, $file:literal, [$($argument:expr),*], [$($shared:expr),*]) => {
         Part {
-            id: $id,
-            text: include_str!(concat!("templates/effects/", $file, ".h")),
+            id: Cow::Borrowed($id),
+            text: Cow::Borrowed(include_str!(concat!("templates/effects/", $file, ".h"))),
             arguments: &[$($argument),*],
             needs: &[$($shared),*],
         }

@@ -6,6 +6,7 @@ typedef struct {
     double static_force_n;    /* without friction */
     double friction_n;        /* friction of eq. 11 while contracting; a loss */
     double slope_n_per_pa;    /* of the force without friction */
+    double slope_n_per_m;     /* the same, over the length */
 } pam_base;
 
 static inline double pam_diameter_m(double length_m)
