@@ -14,8 +14,11 @@ use desk::{Desk, logs};
 
 const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-group-1.json");
 
+/// What makes a muscle of the nominal one.
+type Change = fn(&mut Parameters);
+
 /// Muscles, and how each differs from the nominal one.
-const MUSCLES: [(&str, fn(&mut Parameters)); 3] = [
+const MUSCLES: [(&str, Change); 3] = [
     ("soft", |parameters| parameters.c10_pa *= 0.8),
     ("nominal", |_| {}),
     ("stiff", |parameters| parameters.c10_pa *= 1.2),

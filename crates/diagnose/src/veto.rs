@@ -169,7 +169,7 @@ fn shares(held: &Setting<'_>, found: &Found) -> Vec<Option<Share>> {
     let state = &found.best.state;
     let is_judged = |index: usize| {
         let effect = state.guesses[index].effect;
-        effect.kind() != Kind::Event && !(effect.is_static() && !effect.is_local())
+        effect.kind() != Kind::Event && (!effect.is_static() || effect.is_local())
     };
     (0..state.guesses.len()).map(|index| is_judged(index).then(|| share(held, state, index)).flatten()).collect()
 }

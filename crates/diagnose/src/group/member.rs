@@ -137,8 +137,10 @@ impl<'a> Member<'a> {
             }
         };
         let base = parts(&self.explanations[0]).1;
-        let (mut without, mut with): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
-        let better = |best: &mut Option<(f64, f64)>, held_out: &HeldOut, cost: f64| {
+        /// What is gained, and what is then left, a mean square in N².
+        type Gain = (f64, f64);
+        let (mut without, mut with) = (None, None);
+        let better = |best: &mut Option<Gain>, held_out: &HeldOut, cost: f64| {
             let gained = base.log_ratio(held_out) - cost;
             if best.is_none_or(|(most, _)| gained > most) {
                 *best = Some((gained, held_out.mean_square()));
