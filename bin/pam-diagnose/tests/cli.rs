@@ -95,8 +95,12 @@ impl Desk {
 
     /// What pam-identify finds.
     fn identified(&self) -> ModelArtifact {
+        self.identified_from(&FITTED)
+    }
+
+    fn identified_from(&self, names: &[&str]) -> ModelArtifact {
         let request = Request {
-            estimation: FITTED.iter().map(|name| self.recording(&format!("{name}.csv"))).collect(),
+            estimation: names.iter().map(|name| self.recording(&format!("{name}.csv"))).collect(),
             validation: Vec::new(),
             muscle: muscle_file(),
             form: Form::Corrected,
@@ -510,6 +514,34 @@ fn recordings_of_another_muscle_are_refused_unless_they_are_accepted() {
     let (diagnosis, _) = desk.diagnosed(&format!("{LOGS} --model other.json {files}"), 1);
     assert!(diagnosis.statement.starts_with("The model as given misses the recordings"), "{}", diagnosis.statement);
     assert!(!matches!(diagnosis.verdict, Verdict::Consistent | Verdict::Explained));
+}
+
+/// Rows of a recording in which the length is within 0.3 mm of what it is for the longest.
+fn at_one_length(desk: &Desk, name: &str) -> String {
+    let text = std::fs::read_to_string(desk.path(name)).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let length_mm = |row: &str| row.split(',').nth(2).unwrap().parse::<f64>().unwrap();
+    let first_mm = rows.lines().map(length_mm).next().unwrap();
+    let kept: Vec<&str> = rows.lines().take_while(|row| (length_mm(row) - first_mm).abs() < 0.3).collect();
+    format!("{header}\n{}\n", kept.join("\n"))
+}
+
+#[test]
+fn a_hold_out_far_from_what_was_fitted_is_of_no_other_muscle() {
+    let desk = &Desk::with(&[]);
+    let held = at_one_length(desk, "isometric-ramps.csv");
+    desk.file("one-length.csv", held);
+    desk.file("narrow.json", serde_json::to_vec(&desk.identified_from(&["one-length"])).unwrap());
+    let files = "--out narrow-diagnosis.json --quiet";
+    let output = desk.run(&format!("one-length.csv --model narrow.json {HELD} {files}"));
+    assert_ne!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+    let (diagnosis, _) = DiagnosisArtifact::read(&desk.path("narrow-diagnosis.json")).unwrap();
+    assert!(!diagnosis.statement.contains("another muscle"), "{}", diagnosis.statement);
+    assert!(diagnosis.warnings.iter().any(|words| words.contains("no fitted recording was near")));
+    let held = diagnosis.fit.holdout.unwrap();
+    if held.rmse_after_n > 10.0 * held.noise_floor_n {
+        assert!(diagnosis.statement.contains("judges the extrapolation"), "{}", diagnosis.statement);
+    }
 }
 
 #[test]

@@ -13,10 +13,7 @@ use pam_identification::prepare::Prepared;
 use pam_identification::search_space::Free;
 
 use crate::diagnose::Diagnosis;
-use crate::discover;
 use crate::error::DiagnoseError;
-use crate::nuisance::MAP_ID;
-use crate::{held, words};
 
 /// How an artifact begins.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,66 +100,6 @@ fn effective_samples(diagnosis: &Diagnosis) -> Result<f64, DiagnoseError> {
 }
 
 impl Diagnosis {
-    /// Says the verdict in words and numbers, and lowers what is called explained to explained in part where, over all samples,
-    /// more is left than half as much again as the sensors leave, and says so. The model as given and what was held out decide,
-    /// too: where either is missed, nothing is consistent or explained, and that is said first.
-    ///
-    /// # Errors
-    /// [`DiagnoseError::Recording`] where samples cannot be read back.
-    pub fn weigh(&mut self, agreement: &Agreement) -> Result<(), DiagnoseError> {
-        if self.is_followed(agreement) {
-            self.verdict = Verdict::Consistent;
-            (self.regions, self.unexplained) = (Vec::new(), Vec::new());
-        }
-        let numbers = self.numbers(agreement);
-        self.unexplained_share = numbers.share_left();
-        self.statement = words::statement(self.verdict, &self.effects, &numbers, &self.regions, &self.unexplained)
-            + &self.empirical.as_ref().map_or(String::new(), discover::statement);
-        let left_n = together(&agreement.estimation).rmse_all_n;
-        let sensors_n = self.sizes.sensors_n;
-        if self.verdict == Verdict::Explained && left_n > EXPLAINED_WITHIN * sensors_n {
-            self.verdict = Verdict::ExplainedInPart;
-            self.statement.push_str(&format!(
-                " Over all samples, reversals included, {left_n:.2} N are left, where noise leaves {:.2} N.",
-                numbers.floor_n
-            ));
-        }
-        let held = held::judge(self, agreement)?;
-        self.given.holdout_missed = held.missed;
-        self.noticed.extend(held.elsewhere);
-        if self.given.misses || !self.given.holdout_missed.is_empty() {
-            self.verdict = match self.verdict {
-                Verdict::Consistent | Verdict::Unexplained => Verdict::Unexplained,
-                Verdict::Explained | Verdict::ExplainedInPart | Verdict::Ambiguous => Verdict::ExplainedInPart,
-            };
-        }
-        self.statement = words::with_given(&self.given, &self.statement);
-        Ok(())
-    }
-
-    /// Whether recordings that nothing was fitted to are followed so well, over all samples, that what is left of the fitted ones
-    /// without a name, and without a term that models it, does not matter.
-    fn is_followed(&self, agreement: &Agreement) -> bool {
-        let held = agreement.base_holdout.together.as_ref();
-        self.verdict == Verdict::Unexplained
-            && self.effects.is_empty()
-            && self.empirical.is_none()
-            && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)
-    }
-
-    /// What the verdict says in numbers.
-    fn numbers(&self, agreement: &Agreement) -> words::Numbers {
-        words::Numbers {
-            before_n: together(&agreement.base_estimation).rmse_n,
-            after_n: together(&agreement.estimation).rmse_n,
-            floor_n: agreement.noise_floor_n,
-            matters_n: self.sizes.matters_n,
-            static_n: self.sizes.static_n,
-            held_n: agreement.base_holdout.together.as_ref().map(|held| held.rmse_all_n),
-            with_map: self.entries.iter().any(|entry| entry.id == MAP_ID),
-        }
-    }
-
     /// The diagnosis for other programs and for people.
     ///
     /// # Panics
@@ -408,12 +345,6 @@ impl Diagnosis {
         warnings
     }
 }
-
-/// Times the sensors' noise that may be left of what was held out, over all samples, where nothing was named: as much again as the
-/// noise itself.
-const FOLLOWED_WITHIN: f64 = 2.0;
-/// Times the sensors' noise that may be left of what is called explained.
-const EXPLAINED_WITHIN: f64 = 1.5;
 
 /// All recordings together; a diagnosis has at least one.
 pub(crate) fn together(evaluation: &Evaluation) -> FitStatistics {

@@ -28,6 +28,8 @@ pub(crate) struct Held {
     pub(crate) missed: Vec<String>,
     /// Each recording that is mostly elsewhere, in words.
     pub(crate) elsewhere: Vec<String>,
+    /// What the model misses of such a recording there, which judges the extrapolation alone, in words.
+    pub(crate) unjudged: Vec<String>,
 }
 
 /// Judges the held-out recordings of `diagnosis`.
@@ -62,13 +64,19 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
         }
         // A wrong unit or zero takes a recording elsewhere, too.
         let instrument = reading::said(&reading::explain(&[trace], model.base(), own_n));
+        let all_n = left_n;
         let left_n = if instrument.is_some() { left_n } else { left_n.min(rmse_n(&within)) };
         let reason = match instrument {
             Some(instrument) => instrument,
             None if left_n > MOST * own_n && share_within >= LEAST_WITHIN => {
                 "it is of another muscle, or differs in something that was not fitted".to_owned()
             }
-            None => continue,
+            None => {
+                if share_within < 1.0 - TOLD_OUTSIDE && all_n > MOST * own_n {
+                    held.unjudged.push(format!("{path} is missed by {all_n:.2} N where no fitted recording was near"));
+                }
+                continue;
+            }
         };
         held.missed.push(format!(
             "{path} is missed by {left_n:.2} N, where {own_n:.2} N are left of what was fitted: {reason}"

@@ -290,6 +290,22 @@ pub(crate) mod tests {
             given
         }
 
+        /// Adds noise that neighbors share, of about 0.2 N.
+        pub(crate) fn disturb(&mut self) {
+            for (at, instant) in self.track.instants.iter_mut().enumerate() {
+                let at = at as f64;
+                instant.force_n += 0.2 * ((0.37 * at).sin() + (0.011 * at).sin());
+            }
+        }
+
+        /// Adds a smooth static force of `size_n` at most, which the base lacks.
+        pub(crate) fn bend(&mut self, size_n: f64) {
+            for instant in &mut self.track.instants {
+                let (p, e) = (instant.moment.pressure_pa * 2e-6, instant.moment.contraction_ratio * 5.0);
+                instant.force_n += size_n * (2.5 * p + 2.0 * e).sin() * p;
+            }
+        }
+
         pub(crate) fn guess(&self, id: &str, shape: &[f64]) -> Guess {
             Guess {
                 effect: effect(id).expect("an id"),

@@ -116,14 +116,7 @@ mod tests {
 
     /// Names that are left of `guess` in `given`, where structure is left over `left_over`.
     fn names(given: &Given, guess: Guess, left_over: Coordinate) -> Vec<&'static str> {
-        let limits = Limits {
-            max_effects: 0,
-            excluded: Vec::new(),
-            own: Vec::new(),
-            matters_above_n: None,
-            sensor_floor_n: 0.1,
-            confirmed: false,
-        };
+        let limits = Limits::of_test(0, 0.1);
         let plain = Setting { floor_square: 0.01, ..given.setting() };
         let mut found = search(&plain, &given.start, &given.model, &limits, &|| {}).expect("a search");
         let nuisance = found.nuisance.clone();

@@ -142,18 +142,9 @@ mod tests {
     /// The verdict where the base lacks a smooth static force of `size_n` at most.
     fn verdict_of(size_n: f64) -> Verdict {
         let mut given = Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[]);
-        for (at, instant) in given.track.instants.iter_mut().enumerate() {
-            let (p, e) = (instant.moment.pressure_pa * 2e-6, instant.moment.contraction_ratio * 5.0);
-            instant.force_n += size_n * (2.5 * p + 2.0 * e).sin() * p + 0.2 * (0.37 * at as f64).sin();
-        }
-        let limits = Limits {
-            max_effects: 0,
-            excluded: Vec::new(),
-            own: Vec::new(),
-            matters_above_n: None,
-            sensor_floor_n: 0.3,
-            confirmed: false,
-        };
+        given.disturb();
+        given.bend(size_n);
+        let limits = Limits::of_test(0, 0.3);
         let setting = Setting { floor_square: 0.09, ..given.setting() };
         let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
         verdict(&found, &Sizes::of(&found, &limits), false)

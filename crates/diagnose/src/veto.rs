@@ -3,13 +3,15 @@
 //! The force of an effect, as it was fitted, is predicted on recordings that nothing was fitted to, and compared there with
 //! what the base leaves beside a static map and a tare of each recording: a muscle that lies a few newtons off everywhere
 //! else, or a state that nobody knows at the start, speaks neither for the effect nor against it. What is there with less
-//! than half of its size, and surely so, was none.
+//! than half of its size or more than twice, and surely so, was another one: where that had the strongest evidence, the
+//! next best is looked for.
 
-use pam_core::effects::{AugmentedModel, Kind, Moment};
+use pam_core::effects::{AugmentedModel, Effect, Kind, Moment};
 use pam_core::shift::shifted;
 
 use crate::coordinates::Coordinates;
 use crate::error::DiagnoseError;
+use crate::hypothesis::Guess;
 use crate::nuisance::Nuisance;
 use crate::question::Question;
 use crate::search::Found;
@@ -138,8 +140,7 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
     let strongest = strongest(found, shares);
     let mut least: Option<Denied> = None;
     for (index, (guess, share)) in found.best.state.guesses.iter().zip(shares).enumerate() {
-        // An event is none of the others' recordings; in the place of a smooth static effect the static map would do as well.
-        if guess.effect.kind() == Kind::Event || guess.effect.is_static() && !guess.effect.is_local() {
+        if !is_judged(guess.effect) {
             continue;
         }
         // What acts in a part of the range alone may not have been there.
@@ -167,11 +168,14 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
 /// With how much of its size each effect of `found` is there on `held`; none where nothing can be said.
 fn shares(held: &Setting<'_>, found: &Found) -> Vec<Option<Share>> {
     let state = &found.best.state;
-    let is_judged = |index: usize| {
-        let effect = state.guesses[index].effect;
-        effect.kind() != Kind::Event && (!effect.is_static() || effect.is_local())
-    };
-    (0..state.guesses.len()).map(|index| is_judged(index).then(|| share(held, state, index)).flatten()).collect()
+    let of = |(index, guess): (usize, &Guess)| is_judged(guess.effect).then(|| share(held, state, index)).flatten();
+    state.guesses.iter().enumerate().map(of).collect()
+}
+
+/// Whether other recordings can tell of `effect`: an event is none of theirs, and in the place of a smooth static effect the static
+/// map would do as well.
+fn is_judged(effect: &dyn Effect) -> bool {
+    effect.kind() != Kind::Event && (!effect.is_static() || effect.is_local())
 }
 
 /// Share of its size with which an effect is there.
@@ -312,17 +316,8 @@ mod tests {
         let lag: (&'static str, &[f64], &[f64]) = ("pressure-lag", &[0.15], &[]);
         let damping: (&'static str, &[f64], &[f64]) = ("viscous-damping", &[], &[120.0]);
         let mut given = Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[lag, damping]);
-        for (at, instant) in given.track.instants.iter_mut().enumerate() {
-            instant.force_n += 0.2 * (0.37 * at as f64).sin();
-        }
-        let limits = Limits {
-            max_effects: 2,
-            excluded: Vec::new(),
-            own: Vec::new(),
-            matters_above_n: None,
-            sensor_floor_n: 0.3,
-            confirmed: true,
-        };
+        given.disturb();
+        let limits = Limits { confirmed: true, ..Limits::of_test(2, 0.3) };
         let setting = Setting { floor_square: 0.09, ..given.setting() };
         let mut found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
         assert_eq!(found.taken.len(), 2, "{:?}", found.best.state.guesses);

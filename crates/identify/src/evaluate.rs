@@ -391,10 +391,10 @@ mod tests {
     use super::*;
 
     use pam_core::force::Form;
-    use pam_core::recording::{Recording, Repairs, Samples};
+    use pam_core::recording::Samples;
 
     use crate::prepare::{direct, gate};
-    use crate::testing::{THRESHOLDS, model};
+    use crate::testing::{THRESHOLDS, model, recording};
 
     /// A muscle that shortens evenly; `length_m` of the last row is `last_m`.
     fn ramp(last_m: f64) -> Prepared {
@@ -404,15 +404,7 @@ mod tests {
         length_m[199] = last_m;
         let force_n: Vec<f64> = rows().map(|row| 300.0 - row).collect();
         let samples = Samples::from_columns(&time_s, &[2e5; 200], &length_m, &force_n);
-        let recording = Recording {
-            path: "ramp.csv".to_owned(),
-            sha256: String::new(),
-            samples,
-            segments: std::iter::once(0..200).collect(),
-            repairs: Repairs::default(),
-            ignored_columns: Vec::new(),
-        };
-        direct(gate(vec![recording]).unwrap(), THRESHOLDS, Form::Corrected).unwrap().remove(0)
+        direct(gate(vec![recording("ramp.csv", samples)]).unwrap(), THRESHOLDS, Form::Corrected).unwrap().remove(0)
     }
 
     #[test]

@@ -73,7 +73,7 @@ pub fn finest_length_play_m(gates: &[Gated], muscle: &Muscle) -> f64 {
 }
 
 /// Thresholds of the direction that fit all of `gates`: five times the worst noise, for the length what it wanders within while
-/// it rests, and never less than 1e-4 of the rest length or 1e-3 of the highest pressure, below which a flip means nothing.
+/// it rests, and never less than [`LEAST_PLAY`] of the rest length or 1e-3 of the highest pressure, below which a flip means nothing.
 pub fn thresholds(gates: &[Gated], muscle: &Muscle) -> Thresholds {
     let worst = |name: &str| {
         gates

@@ -194,10 +194,10 @@ fn condensed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pam_core::recording::{Recording, Repairs, Samples};
+    use pam_core::recording::Samples;
 
     use crate::prepare::{direct, gate};
-    use crate::testing::{THRESHOLDS, model};
+    use crate::testing::{THRESHOLDS, model, recording};
 
     /// A muscle that goes one way, rests for 6 s and goes back, at 500 Hz. While it rests its length shakes by 40 µm at 8 Hz, by what
     /// the sensor does alone or by what the muscle does, and friction with it.
@@ -221,15 +221,9 @@ mod tests {
             })
             .collect();
         let samples = Samples::from_columns(&time_s, &[3e5; 5000], &length_m, &force_n);
-        let recording = Recording {
-            path: "shaking.csv".to_owned(),
-            sha256: String::new(),
-            samples,
-            segments: std::iter::once(0..5000).collect(),
-            repairs: Repairs::default(),
-            ignored_columns: Vec::new(),
-        };
-        direct(gate(vec![recording]).expect("a recording"), COARSE, Form::Corrected).expect("directions").remove(0)
+        direct(gate(vec![recording("shaking.csv", samples)]).expect("a recording"), COARSE, Form::Corrected)
+            .expect("directions")
+            .remove(0)
     }
 
     const COARSE: Thresholds = Thresholds { length_m: 2e-4, standstill: Standstill::Held, ..THRESHOLDS };

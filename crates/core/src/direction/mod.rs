@@ -289,3 +289,37 @@ fn rows(recording: &Recording, rows: &Range<usize>) -> io::Result<Columns> {
     })?;
     Ok((time_s, pressure_pa, length_m))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::{Repairs, Samples};
+
+    #[test]
+    fn after_a_gap_nothing_is_known_until_something_moves() {
+        // Contracting for 2 s, a gap, at rest for 2 s, extending for 2 s.
+        let time_s: Vec<f64> = (0..600).map(|row| 0.01 * f64::from(row) + if row < 200 { 0.0 } else { 5.0 }).collect();
+        let length_m: Vec<f64> = (0..600)
+            .map(|row| match row {
+                0..200 => 0.26 - 5e-5 * f64::from(row),
+                200..400 => 0.24,
+                _ => 0.24 + 5e-5 * f64::from(row - 400),
+            })
+            .collect();
+        let samples = Samples::from_columns(&time_s, &[2e5; 600], &length_m, &[100.0; 600]);
+        let recording = Recording {
+            path: "gap.csv".to_owned(),
+            sha256: String::new(),
+            samples,
+            segments: vec![0..200, 200..600],
+            repairs: Repairs::default(),
+            ignored_columns: Vec::new(),
+        };
+        let thresholds =
+            Thresholds { length_m: 1e-4, pressure_pa: 1e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::Held };
+        let direction = Direction::of(&recording, thresholds, Driver::Motion).expect("directions");
+        assert!(direction.is_known(150) && direction.is_settled(150) && direction.sign(150) > 0.0);
+        assert!((210..380).all(|row| !direction.is_known(row) && !direction.is_settled(row)));
+        assert!(direction.is_settled(550) && direction.sign(550) < 0.0);
+    }
+}

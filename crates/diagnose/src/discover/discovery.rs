@@ -3,10 +3,10 @@
 use pam_core::artifact::diagnosis::Verdict;
 use pam_core::effects::{AugmentedModel, Sentence, Term};
 
-use super::confirm::Left;
 use super::field::Field;
 use super::screen::{self, Said};
 use super::{joined, stability};
+use crate::held_error::Left;
 use crate::joint::HeldOut;
 use crate::nuisance::Nuisance;
 use crate::search::{Found, Judged, again, chance, fitting};
@@ -198,14 +198,8 @@ mod tests {
 
     /// What is discovered in `given`, whose sensors leave 0.3 N, beside what is named.
     fn discovered(given: &Given, held: Option<&Given>) -> Vec<Sentence> {
-        let limits = Limits {
-            max_effects: 2,
-            excluded: vec!["braid-lockup".to_owned(), "end-taper".to_owned()],
-            own: Vec::new(),
-            matters_above_n: None,
-            sensor_floor_n: 0.3,
-            confirmed: false,
-        };
+        let limits =
+            Limits { excluded: vec!["braid-lockup".to_owned(), "end-taper".to_owned()], ..Limits::of_test(2, 0.3) };
         let setting = Setting { floor_square: 0.09, ..given.setting() };
         let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
         let sizes = Sizes::of(&found, &limits);
@@ -218,10 +212,10 @@ mod tests {
     /// Noise that neighbors share, of about 0.2 N, and a bump of `height_n` at a contraction of 12 %.
     fn bumped(height_n: f64) -> Given {
         let mut given = Given::of(&PROTOCOLS, &[]);
-        for (at, instant) in given.track.instants.iter_mut().enumerate() {
+        given.disturb();
+        for instant in &mut given.track.instants {
             let off = (instant.moment.contraction_ratio - 0.12) / 0.008;
-            let at = at as f64;
-            instant.force_n += 0.2 * ((0.37 * at).sin() + (0.011 * at).sin()) - height_n * (-off * off).exp();
+            instant.force_n -= height_n * (-off * off).exp();
         }
         given
     }

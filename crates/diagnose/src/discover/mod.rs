@@ -4,11 +4,11 @@
 //! that foretells held-out blocks best, for its degrees of freedom, is fitted jointly with the base and what was named. It is
 //! written only where held-out recordings, or where there are none the blocks, are foretold better with it.
 //!
-//! In reading order: [`discovery`] goes on as long as something gains; [`lexicon`] is what sentences are made of, [`field`] judges one, [`screen`] finds the best, [`joined`] fits
-//! it with everything else, [`confirm`] asks what was held out, [`stability`] whether other draws of blocks would choose it,
-//! [`written`], [`curve`], [`nearest`] and [`said`] are what a person reads of it.
+//! In reading order: [`discovery`] goes on as long as something gains; [`lexicon`] is what sentences are made of, [`field`]
+//! judges one, [`screen`] finds the best, [`joined`] fits it with everything else, [`held_error`](crate::held_error) asks what
+//! was held out, [`stability`] whether other draws of blocks would choose it, [`written`], [`curve`], [`nearest`] and [`said`]
+//! are what a person reads of it.
 
-mod confirm;
 mod curve;
 mod discovery;
 mod field;

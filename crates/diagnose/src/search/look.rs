@@ -25,9 +25,9 @@ const FORM: f64 = 25.0;
 const FORM_SHARE: f64 = 0.0045;
 /// The same that no healthy muscle comes near: the least regular of those 70 had 1.21 %.
 pub(super) const FORM_AT_MOST: f64 = 0.0135;
-/// How much more, in mean squares, the map must take up for an effect that acts through eq. 11, or makes it strain: what eq. 11 misses
-/// of a muscle looks like another stiffness of its own. Of ten such effects that slices called up wrongly, the largest had 1.9 times the
-/// limit; of four right ones the smallest had 2.5.
+/// How much more, in mean squares, the map must take up for an effect that acts through eq. 11: what eq. 11 misses of a muscle looks
+/// like another stiffness of its own. Of four such effects that slices called up wrongly, the largest had 1.15 times the limit; of three
+/// right ones the smallest had 2.5. Where eq. 11 strains beside the effect, it takes more than any healthy muscle has.
 const LIKE_THE_BASE: f64 = 2.0;
 
 /// What a static map takes up in muscles, in N², where the sensors leave `sensors_n` and the force ranges over `range_n`;
@@ -125,7 +125,9 @@ impl Look<'_> {
         let full_floor = floor_square + self.limits.sensor_floor_n.powi(2);
         let matters = self.limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
         let (low_n, high_n) = self.seen.force_n;
-        let least = matters.max(form_square(self.limits.sensor_floor_n, high_n - low_n, FORM_SHARE));
+        let [form, most] =
+            [FORM_SHARE, FORM_AT_MOST].map(|share| form_square(self.limits.sensor_floor_n, high_n - low_n, share));
+        let least = matters.max(form);
         if map < least {
             return None;
         }
@@ -140,7 +142,10 @@ impl Look<'_> {
             .filter(stands)
             .filter_map(|trial| settle(&beside, &bare, trial))
             .map(|named| (is_strained(&beside, &named, base), named))
-            .filter(|(strained, named)| map > least * if *strained || sees(named) { LIKE_THE_BASE } else { 1.0 })
+            .filter(|(strained, named)| {
+                let base_like = if sees(named) { LIKE_THE_BASE * least } else { least };
+                map > if *strained { base_like.max(most) } else { base_like }
+            })
             .collect();
         let at_ease = named.iter().find(|(strained, _)| !strained).or(named.first());
         again(self.mapped, &at_ease?.1)

@@ -44,6 +44,15 @@ pub struct Limits {
     pub confirmed: bool,
 }
 
+#[cfg(test)]
+impl Limits {
+    /// Of a test: at most `max_effects` of the catalogue, in recordings whose sensors leave `sensor_floor_n`; nothing is held out.
+    pub(crate) fn of_test(max_effects: usize, sensor_floor_n: f64) -> Self {
+        let (excluded, own) = (Vec::new(), Vec::new());
+        Self { max_effects, excluded, own, matters_above_n: None, sensor_floor_n, confirmed: false }
+    }
+}
+
 /// A hypothesis with what it leaves.
 #[derive(Debug, Clone)]
 pub struct Judged {
@@ -264,49 +273,31 @@ mod tests {
 
     /// Names that a search finds in `given`, whose sensors leave 0.3 N.
     fn names(given: &Given) -> Vec<&'static str> {
-        let limits = Limits {
-            max_effects: 3,
-            excluded: Vec::new(),
-            own: Vec::new(),
-            matters_above_n: None,
-            sensor_floor_n: 0.3,
-            confirmed: false,
-        };
+        let limits = Limits::of_test(3, 0.3);
         let setting = Setting { floor_square: 0.09, ..given.setting() };
         let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
         found.best.state.guesses.iter().map(Guess::id).collect()
     }
 
-    /// Noise that neighbors share, of about 0.2 N.
-    fn disturb(given: &mut Given) {
-        for (at, instant) in given.track.instants.iter_mut().enumerate() {
-            let at = at as f64;
-            instant.force_n += 0.2 * ((0.37 * at).sin() + (0.011 * at).sin());
-        }
-    }
-
     #[test]
     fn what_lacks_nothing_gets_no_name() {
         let mut given = Given::of(&PROTOCOLS, &[]);
-        disturb(&mut given);
+        given.disturb();
         assert_eq!(names(&given), Vec::<&str>::new());
     }
 
     #[test]
     fn a_lag_is_named_and_nothing_beside_it() {
         let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
-        disturb(&mut given);
+        given.disturb();
         assert_eq!(names(&given), ["pressure-lag"]);
     }
 
     #[test]
     fn a_smooth_misfit_of_the_base_calls_up_no_effect_with_a_memory() {
         let mut given = Given::of(&PROTOCOLS, &[]);
-        disturb(&mut given);
-        for instant in &mut given.track.instants {
-            let (p, e) = (instant.moment.pressure_pa * 2e-6, instant.moment.contraction_ratio * 5.0);
-            instant.force_n += 6.0 * (2.5 * p + 2.0 * e).sin() * p;
-        }
+        given.disturb();
+        given.bend(6.0);
         assert!(names(&given).iter().all(|id| effect(id).is_some_and(|effect| effect.is_static())));
     }
 }

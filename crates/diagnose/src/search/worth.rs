@@ -74,14 +74,7 @@ mod tests {
     }
 
     fn limits(confirmed: bool) -> Limits {
-        Limits {
-            max_effects: 4,
-            excluded: Vec::new(),
-            own: Vec::new(),
-            matters_above_n: None,
-            sensor_floor_n: 0.3,
-            confirmed,
-        }
+        Limits { confirmed, ..Limits::of_test(4, 0.3) }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What held-out recordings say of a term: the error of the whole model along them, with and without it.
+//! The error of a whole model along held-out recordings, and what it says of a term: with it and without it.
 
 use pam_core::effects::AugmentedModel;
 
@@ -12,14 +12,14 @@ const MOST_HARM: f64 = 1.05;
 
 /// Root mean squares of what a model leaves of held-out recordings, in N.
 #[derive(Debug, Clone)]
-pub(super) struct Left {
+pub(crate) struct Left {
     /// Of every recording, with the number of its instants.
     each: Vec<(f64, f64)>,
 }
 
 impl Left {
     /// Of `model`, without what happened once.
-    pub(super) fn of(model: &AugmentedModel, held: &Track) -> Self {
+    pub(crate) fn of(model: &AugmentedModel, held: &Track) -> Self {
         let modelled_n = force_n(held, &model.without_events());
         let each = held.recordings.iter().map(|range| {
             let (mut squares, mut count) = (0.0, 0.0);
@@ -33,7 +33,7 @@ impl Left {
     }
 
     /// Over all instants, in N.
-    pub(super) fn together_n(&self) -> f64 {
+    pub(crate) fn together_n(&self) -> f64 {
         let (squares, count) = self
             .each
             .iter()
@@ -42,7 +42,7 @@ impl Left {
     }
 
     /// Whether the held-out recordings confirm what leaves `with` of them.
-    pub(super) fn is_bettered_by(&self, with: &Self) -> bool {
+    pub(crate) fn is_bettered_by(&self, with: &Self) -> bool {
         let harmed = self.each.iter().zip(&with.each).any(|(before, after)| after.0 > MOST_HARM * before.0);
         !harmed && with.together_n().powi(2) < (1.0 - LEAST_GAIN) * self.together_n().powi(2)
     }
