@@ -5,9 +5,9 @@ HALF_S = 0.04
 
 
 def slope(times, values, order):
-    """First or second derivative at every instant: a parabola through the values around it, least squares."""
+    """Value, first or second derivative at every instant: a parabola through the values around it, least squares."""
     answer, first, last = [], 0, 0
-    for time_s in times:
+    for time_s, value in zip(times, values):
         while times[first] < time_s - HALF_S:
             first += 1
         while last < len(times) and times[last] <= time_s + HALF_S:
@@ -19,10 +19,10 @@ def slope(times, values, order):
         matrix = [[sums[row + column] for column in range(3)] for row in range(3)]
         whole = determinant(matrix)
         if len(near) < 5 or whole == 0.0:
-            answer.append(0.0)
+            answer.append(0.0 if order else value)
             continue
         other = [[right[row] if column == order else matrix[row][column] for column in range(3)] for row in range(3)]
-        answer.append(determinant(other) / whole * order)
+        answer.append(determinant(other) / whole * max(order, 1))
     return answer
 
 
@@ -55,10 +55,12 @@ def compliant(mm_per_n):
 
 def with_play(half_kpa):
     def done(columns):
-        shown, read = columns["pressure_kPa"][0], []
-        for pressure in columns["pressure_kPa"]:
-            shown = min(max(shown, pressure - half_kpa), pressure + half_kpa)
-            read.append(shown)
+        # The noise of a gauge is made after its mechanism, which would swallow it.
+        true = slope(columns["time_s"], columns["pressure_kPa"], 0)
+        shown, read = true[0], []
+        for value, pressure in zip(true, columns["pressure_kPa"]):
+            shown = min(max(shown, value - half_kpa), value + half_kpa)
+            read.append(shown + pressure - value)
         columns["pressure_kPa"] = read
     return done
 

@@ -1,7 +1,9 @@
 //! Effects of the rig that are known from elsewhere, taken off the recordings before anything is searched in them.
 //!
 //! What an effect changes of the channels is put right in every moment, and its pull is taken off the force; a search on such a
-//! track finds what is left for the muscle, whatever it is. The augmented model has the same effects before those of the muscle,
+//! track finds what is left for the muscle, whatever it is. No value that muscles share is exactly right for each, and no effect
+//! has exactly the form of its page: other forms of it stay in as nuisances ([`mod@crate::forms`]), so that what is left of the rig's
+//! gets no name in a muscle. The augmented model has the same effects before those of the muscle,
 //! in the same order, so that both say the same.
 
 use pam_core::artifact::ModelArtifact;
@@ -12,6 +14,7 @@ use pam_core::shift::shifted;
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
 
+use crate::forms;
 use crate::track::Track;
 
 /// The lag of the tube, which the catalogue counts among the muscle's: on one rig all muscles hang on the same valve and tube.
@@ -36,6 +39,7 @@ fn without(mut track: Track, rig: &[Term], base: &ForceModel) -> Track {
     if rig.is_empty() {
         return track;
     }
+    track.known_forms_n = forms::of_known_n(&track, base, rig);
     let delays_s = AugmentedModel::new(base.clone(), rig.to_vec()).delays_s();
     for range in track.recordings.clone() {
         let instants = &mut track.instants[range];

@@ -33,6 +33,10 @@ pub struct GroupArtifact {
     pub muscles: Vec<GroupMuscle>,
     /// Every effect of the rig that was weighed in all muscles together, the largest log predictive ratio first.
     pub candidates: Vec<RigCandidate>,
+    /// Catalogue ids of effects of the rig that would explain what was fitted, and that what was held out denies.
+    pub denied: Vec<String>,
+    /// Catalogue ids of effects of a rig that several muscles show, each with a value of its own: not of one rig.
+    pub apart: Vec<String>,
     /// What a person should know before using it.
     pub warnings: Vec<String>,
 }
@@ -51,6 +55,8 @@ pub struct RigEffect {
     pub parameters: Vec<ParameterEntry>,
     /// Log predictive ratio of all muscles together, beyond what explains each of them without it.
     pub log_ratio: f64,
+    /// With how much of its fitted size held-out recordings of all muscles show it; none where they cannot.
+    pub held_out: Option<HeldOutShare>,
     /// What each muscle says of it.
     pub muscles: Vec<InMuscle>,
     /// Ids of effects of the rig that the muscles together cannot tell apart from it.
@@ -69,8 +75,20 @@ pub struct InMuscle {
     pub says: Says,
     /// Log predictive ratio of the shared values in this muscle.
     pub log_ratio: f64,
+    /// With how much of its fitted size its held-out recordings show it; none where they cannot.
+    pub held_out: Option<HeldOutShare>,
     /// The values that it has by itself where it differs, and its own amplitudes beside the shared shape otherwise, SI.
     pub own: Vec<ParameterEntry>,
+}
+
+/// Share of its fitted size with which held-out recordings show an effect: 1 confirms it, 0 denies it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HeldOutShare {
+    /// The share.
+    pub share: f64,
+    /// Its standard error.
+    pub stderr: f64,
 }
 
 /// What recordings of one muscle say of an effect of the rig.

@@ -1,18 +1,25 @@
 //! A look at what the rig may do, in all muscles together.
 
-use pam_core::artifact::group::Says;
+use pam_core::artifact::group::{RigCandidate, Says};
 use pam_core::effects::{Effect, Term};
 
-use super::member::{Estimate, Member, Worth};
-use super::shared::{Shared, best, is_apart, own_value, pooled, spread};
+use super::member::{Estimate, Fitted, Member, Worth};
+use super::shared::{Shared, best, is_apart, own_value, polished, pooled, spread};
 use crate::hypothesis::Guess;
 use crate::verdict::{DECLARED_RIVAL, RIVAL};
+use crate::veto::Share;
 
-/// Log predictive ratio of a muscle that shows an effect, or, below zero, speaks against it.
+/// Log predictive ratio below which, below zero, a muscle speaks against an effect, or beyond which it shows one that no other does.
 pub(super) const TELLS: f64 = 1.0;
+/// The same of a muscle that shows it as others do.
+const SHOWS: f64 = 0.5;
 /// Log predictive ratio that all muscles together must reach: what a further effect must in one.
 const LEAST_LOG_RATIO: f64 = 3.0;
-/// Muscles that must show an effect before it is one of the rig.
+/// The same without the muscle that says most: what one of them shows alone is its own. As much as a name has to gain.
+const LEAST_OF_OTHERS: f64 = 1.5;
+/// The same that a further effect must reach in all muscles together before any other was taken off.
+const LEAST_ALONE: f64 = 1.5;
+/// Muscles that share a value, at least.
 const LEAST_MUSCLES: usize = 2;
 /// Share of what is left beyond the sensors that it must explain in all muscles together.
 const LEAST_SHARE: f64 = 0.1;
@@ -25,6 +32,8 @@ pub(super) struct Taken {
     pub(super) each: Vec<Has>,
     /// Ids of others that gain nearly as much.
     pub(super) rivals: Vec<&'static str>,
+    /// With how much of its size it is there on what was held out of all muscles.
+    pub(super) held: Option<Share>,
 }
 
 /// What a muscle has of it.
@@ -34,9 +43,16 @@ pub(super) struct Has {
     pub(super) worth: Worth,
     /// Its shape and its amplitudes: the shared shape unless it differs.
     pub(super) guess: Guess,
-    pub(super) own: Option<Estimate>,
+    pub(super) own: Option<Fitted>,
     /// What is taken off its recordings; none where they speak against it.
     pub(super) term: Option<Term>,
+}
+
+impl Has {
+    /// Its values.
+    pub(super) fn estimate(&self) -> Option<&Estimate> {
+        self.own.as_ref().map(|own| &own.estimate)
+    }
 }
 
 /// Every effect of `effects` at the shape that gains most in all `members`, the best first.
@@ -47,25 +63,56 @@ pub(super) fn look(members: &[Member<'_>], effects: &[&'static dyn Effect]) -> V
     found
 }
 
-/// The best of `found` that is one of the rig, with what each muscle has of it.
-pub(super) fn taken(members: &[Member<'_>], found: &[Shared]) -> Option<Taken> {
-    let chosen = found.iter().find(|shared| stands(members, shared))?;
-    let rivals = found
-        .iter()
-        .filter(|other| other.guess.id() != chosen.guess.id())
-        .filter(|other| {
-            let confused = chosen.guess.effect.page().confused_with;
-            let declared = confused.iter().any(|confusion| confusion.id == other.guess.id());
-            other.log_ratio() > if declared { DECLARED_RIVAL } else { RIVAL } * chosen.log_ratio()
+/// What became of a look.
+#[derive(Debug, Default)]
+pub(super) struct Outcome {
+    /// The best that is one of the rig, with what each muscle has of it.
+    pub(super) taken: Option<Taken>,
+    /// Ids of those before it that what was held out denies.
+    pub(super) denied: Vec<&'static str>,
+    /// Ids of those before it that have a value of their own in nearly every muscle.
+    pub(super) apart: Vec<&'static str>,
+}
+
+/// The best of `found` that is one of the rig; `first` is what every effect gained before any was taken, none at the first look.
+pub(super) fn taken(members: &[Member<'_>], found: &[Shared], first: Option<&[RigCandidate]>) -> Outcome {
+    let mut outcome = Outcome::default();
+    // What gains nothing until another effect has been taken off is the remainder of that one: no shared value is exactly right for
+    // every muscle, and no effect has exactly the form of its page.
+    let is_a_remainder = |id: &str| {
+        first.is_some_and(|first| {
+            first.iter().find(|candidate| candidate.id == id).is_none_or(|alone| alone.log_ratio < LEAST_ALONE)
         })
-        .map(|other| other.guess.id())
-        .collect();
-    Some(settled(members, chosen.clone(), rivals))
+    };
+    for chosen in found.iter().filter(|shared| stands(members, shared) && !is_a_remainder(shared.guess.id())) {
+        let Outcome { denied, apart, .. } = &outcome;
+        let rivals = found
+            .iter()
+            .map(|other| (other.guess.id(), other.log_ratio()))
+            .filter(|(id, _)| *id != chosen.guess.id() && !denied.contains(id) && !apart.contains(id))
+            .filter(|(id, log_ratio)| {
+                let confused = chosen.guess.effect.page().confused_with;
+                let declared = confused.iter().any(|confusion| confusion.id == *id);
+                *log_ratio > if declared { DECLARED_RIVAL } else { RIVAL } * chosen.log_ratio()
+            })
+            .map(|(id, _)| id)
+            .collect();
+        let taken = settled(members, chosen.clone(), rivals);
+        if taken.held.is_some_and(|held| held.denies(taken.guess.effect)) {
+            outcome.denied.push(chosen.guess.id());
+        } else if taken.each.iter().filter(|has| has.says == Says::Shows).count() < LEAST_MUSCLES {
+            outcome.apart.push(chosen.guess.id());
+        } else {
+            return Outcome { taken: Some(taken), ..outcome };
+        }
+    }
+    outcome
 }
 
 /// Whether the muscles together say that it is there.
 fn stands(members: &[Member<'_>], shared: &Shared) -> bool {
-    let shown = shared.each.iter().filter(|worth| worth.log_ratio > TELLS).count();
+    let most = shared.each.iter().map(|worth| worth.log_ratio).fold(f64::NEG_INFINITY, f64::max);
+    let shown = shared.each.iter().filter(|worth| worth.log_ratio > SHOWS).count();
     let denied = shared.each.iter().filter(|worth| worth.log_ratio < -TELLS).count();
     let (mut gained, mut left) = (0.0, 0.0);
     for (member, worth) in members.iter().zip(&shared.each) {
@@ -74,7 +121,11 @@ fn stands(members: &[Member<'_>], shared: &Shared) -> bool {
         gained += member.n_counted() as f64 * (worth.without - worth.with) / square;
         left += member.n_counted() as f64 * (worth.without - member.floor_square()).max(0.0) / square;
     }
-    shown >= LEAST_MUSCLES && shown > 2 * denied && shared.log_ratio() > LEAST_LOG_RATIO && gained > LEAST_SHARE * left
+    let log_ratio = shared.log_ratio();
+    log_ratio > LEAST_LOG_RATIO
+        && log_ratio - most > LEAST_OF_OTHERS
+        && shown > 2 * denied
+        && gained > LEAST_SHARE * left
 }
 
 /// What each muscle has of `shared`; those with a value of their own have no part in the shared one.
@@ -93,6 +144,9 @@ fn settled(members: &[Member<'_>], mut shared: Shared, rivals: Vec<&'static str>
             .map(|(member, worth)| member.worth(&others.guess, false).unwrap_or(*worth));
         shared = Shared { each: each.collect(), guess: others.guess };
     }
+    let guess = polished(&alike, shared.guess);
+    let each = members.iter().zip(&shared.each).map(|(member, worth)| member.worth(&guess, false).unwrap_or(*worth));
+    let shared = Shared { each: each.collect(), guess };
     let mut each: Vec<Has> = members
         .iter()
         .zip(own)
@@ -100,26 +154,28 @@ fn settled(members: &[Member<'_>], mut shared: Shared, rivals: Vec<&'static str>
         .map(|((member, own), &worth)| {
             let differs = own.is_some();
             let guess = own.map_or_else(|| shared.guess.clone(), |(guess, _)| guess);
-            let says = if differs {
-                Says::Differs
-            } else if worth.log_ratio > TELLS {
-                Says::Shows
-            } else if worth.log_ratio < -TELLS {
+            let own = member.fitted(&guess);
+            let held = own.as_ref().and_then(|own| own.held);
+            let says = if held.is_some_and(|held| held.denies(guess.effect)) || worth.log_ratio < -TELLS {
                 Says::Denies
+            } else if differs {
+                Says::Differs
+            } else if worth.log_ratio > SHOWS || worth.log_ratio > 0.0 && held.is_some_and(Share::shows) {
+                Says::Shows
             } else {
                 Says::CannotShow
             };
-            Has { says, worth, own: member.estimate(&guess), guess, term: None }
+            Has { says, worth, own, guess, term: None }
         })
         .collect();
     let scatter = spread(&alike, &shared.guess);
     let telling = |each: &[Has]| -> Estimate {
         let told = each.iter().filter(|has| matches!(has.says, Says::Shows | Says::CannotShow));
-        pooled(&shared.guess, &told.filter_map(|has| has.own.as_ref()).collect::<Vec<_>>(), &scatter)
+        pooled(&shared.guess, &told.filter_map(Has::estimate).collect::<Vec<_>>(), &scatter)
     };
     let first = telling(&each);
     for has in each.iter_mut().filter(|has| has.says == Says::Shows && !has.guess.effect.outlasts()) {
-        if has.own.as_ref().is_some_and(|own| is_apart(&shared.guess, own, &first)) {
+        if has.estimate().is_some_and(|own| is_apart(&shared.guess, own, &first)) {
             has.says = Says::Differs;
         }
     }
@@ -128,12 +184,13 @@ fn settled(members: &[Member<'_>], mut shared: Shared, rivals: Vec<&'static str>
         let n_shapes = has.guess.shape.len();
         // What a drift begins with is of each recording's hour.
         let is_own = has.says == Says::Differs || has.guess.effect.outlasts();
-        let values = has.own.as_ref().filter(|_| is_own).unwrap_or(&estimate);
+        let values = has.estimate().filter(|_| is_own).unwrap_or(&estimate);
         let ranges = has.guess.amplitudes().iter().map(|amplitude| amplitude.range);
         let amplitudes =
             values.values[n_shapes..].iter().zip(ranges).map(|(value, (low, high))| value.clamp(low, high));
         has.term =
             Some(Term { effect: has.guess.effect, amplitudes: amplitudes.collect(), shape: has.guess.shape.clone() });
     }
-    Taken { guess: shared.guess, shared: estimate, each, rivals }
+    let held: Vec<Share> = each.iter().filter_map(|has| has.own.as_ref()?.held).collect();
+    Taken { guess: shared.guess, shared: estimate, held: Share::pooled(&held), each, rivals }
 }

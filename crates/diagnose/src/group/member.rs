@@ -19,6 +19,7 @@ use crate::state::{Setting, State};
 use crate::track::Track;
 use crate::trial::{self, Shapes};
 use crate::uncertainty::{Uncertainty, correlated_instants, shape_errors};
+use crate::veto::{Share, held_share};
 
 /// Log predictive ratio that every effect of an explanation costs: as much as a name has to gain.
 const COST: f64 = 1.5;
@@ -27,6 +28,8 @@ const COST: f64 = 1.5;
 pub(super) struct Member<'a> {
     question: &'a Question<'a>,
     track: Track,
+    /// What was held out of it.
+    heldout: Option<Track>,
     /// A static map that bends, as all effects with a memory are judged beside.
     nuisance: Nuisance,
     /// What the recordings cover.
@@ -62,6 +65,14 @@ pub(super) struct Worth {
     pub(super) with: f64,
 }
 
+/// An effect of the rig fitted to one muscle.
+#[derive(Debug, Clone)]
+pub(super) struct Fitted {
+    pub(super) estimate: Estimate,
+    /// With how much of its size it is there on what was held out; none where nothing can be said.
+    pub(super) held: Option<Share>,
+}
+
 /// An effect of the rig as one muscle has it.
 #[derive(Debug, Clone)]
 pub(super) struct Estimate {
@@ -78,11 +89,19 @@ impl<'a> Member<'a> {
     /// [`DiagnoseError::Undetermined`] where the recordings determine no fit; where they cannot be read back.
     pub(super) fn of(question: &'a Question<'a>, diagnosis: &Diagnosis, known: &[Term]) -> Result<Self, DiagnoseError> {
         let track = rig::track(question.estimation, question.model, known)?;
+        let Diagnosis { holdout, .. } = diagnosis;
+        let held = || rig::track(holdout, question.model, known);
+        let heldout = (!holdout.is_empty()).then(held).transpose()?;
         let undetermined = || DiagnoseError::Undetermined { path: question.estimation[0].recording.path.clone() };
-        Self::explained(question, track, diagnosis).ok_or_else(undetermined)
+        Self::explained(question, track, heldout, diagnosis).ok_or_else(undetermined)
     }
 
-    fn explained(question: &'a Question<'a>, track: Track, diagnosis: &Diagnosis) -> Option<Self> {
+    fn explained(
+        question: &'a Question<'a>,
+        track: Track,
+        heldout: Option<Track>,
+        diagnosis: &Diagnosis,
+    ) -> Option<Self> {
         let coordinates = Coordinates::of(&track);
         let model = question.model.force_model();
         let of_recordings = Nuisance::of_recordings(&track, question.limits.sensor_floor_n).with_reversals(
@@ -118,7 +137,7 @@ impl<'a> Member<'a> {
             let state = setting.fit_near(guesses, &base.state).and_then(|state| judged(&setting, state));
             explanations.extend(state.and_then(|judged| Explanation::of(&setting, judged)));
         }
-        Some(Self { question, track, nuisance, seen, explanations })
+        Some(Self { question, track, heldout, nuisance, seen, explanations })
     }
 
     fn setting(&self) -> Setting<'_> {
@@ -169,9 +188,9 @@ impl<'a> Member<'a> {
         self.question.limits.sensor_floor_n.powi(2)
     }
 
-    /// The values of `guess` with its shapes as they are, beside the explanation that goes best with it, and their standard
-    /// errors; none where it determines no fit.
-    pub(super) fn estimate(&self, guess: &Guess) -> Option<Estimate> {
+    /// The values of `guess` with its shapes as they are, beside the explanation that goes best with it, with their standard
+    /// errors and what was held out says of it; none where it determines no fit.
+    pub(super) fn fitted(&self, guess: &Guess) -> Option<Fitted> {
         let setting = self.setting();
         let fits = self.explanations.iter().filter_map(|explanation| {
             let state = trial::with(&setting, &explanation.whole, guess)?;
@@ -190,7 +209,8 @@ impl<'a> Member<'a> {
             values.extend(&state.fit.amplitudes[first..]);
             errors.extend(uncertainty.amplitudes[first..].iter().map(|&error| Some(error)));
         }
-        Some(Estimate { values, errors })
+        let held = self.heldout.as_ref().and_then(|heldout| held_share(self.question, heldout, &state, last));
+        Some(Fitted { estimate: Estimate { values, errors }, held })
     }
 }
 

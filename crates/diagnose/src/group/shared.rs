@@ -1,6 +1,6 @@
 //! The value of an effect of the rig that all muscles share: where their evidence together is largest.
 
-use pam_core::effects::{Effect, Seen};
+use pam_core::effects::{Effect, Seen, Shape};
 use rayon::prelude::*;
 
 use super::member::{Estimate, Member, Worth};
@@ -9,6 +9,12 @@ use crate::trial::step_around;
 
 /// Rounds in which shapes are refined, at half the distance each time.
 const ROUNDS: usize = 6;
+/// Steps to one side in a round, at most.
+const MOST_STEPS: usize = 4;
+/// The same on all instants, and the first step there as a share of the distance on the grid.
+const POLISH_ROUNDS: usize = 4;
+/// See [`POLISH_ROUNDS`].
+const POLISH: f64 = 0.25;
 /// Log predictive ratio that a value of its own must gain in a muscle before it is said to differ.
 const OWN_VALUE: f64 = 3.0;
 /// Standard errors by which an amplitude of its own must differ, and by which share of the shared one at least.
@@ -52,26 +58,71 @@ fn together(members: &[&Member<'_>], guess: &Guess) -> Option<f64> {
     members.par_iter().map(|member| Some(member.worth(guess, true)?.log_ratio)).sum()
 }
 
-/// `guess` with better values of its shapes, one after the other.
+/// `guess`, which gains `gained`, with better values of its shapes.
 fn refined(members: &[&Member<'_>], guess: Guess, gained: f64) -> Guess {
+    descended(guess, gained, 1.0, ROUNDS, &|guess| together(members, guess))
+}
+
+/// The same on all instants, from near by: `guess` is good on those that a search for a shape looks at.
+pub(super) fn polished(members: &[&Member<'_>], guess: Guess) -> Guess {
+    let gains = |guess: &Guess| members.par_iter().map(|member| Some(member.worth(guess, false)?.log_ratio)).sum();
+    let Some(gained) = gains(&guess) else { return guess };
+    descended(guess, gained, POLISH, POLISH_ROUNDS, &gains)
+}
+
+/// `guess`, which gains `gained`, with shapes that gain most by `gains`: steps to all sides, one shape or two at a time, since
+/// one of two delays makes up for the other. The first are `share` of the distance on the grid, half as long in every round.
+fn descended(
+    guess: Guess,
+    gained: f64,
+    share: f64,
+    rounds: usize,
+    gains: &dyn Fn(&Guess) -> Option<f64>,
+) -> Guess {
+    let shapes = guess.effect.shape();
+    let step = |(parameter, &value): (&Shape, &f64)| share * step_around(parameter.grid, parameter.range, value);
+    let mut steps: Vec<f64> = shapes.iter().zip(&guess.shape).map(step).collect();
+    let sides = sides(shapes.len());
     let mut best = (gained, guess);
-    for index in 0..best.1.shape.len() {
-        let parameter = best.1.effect.shape()[index];
-        let mut step = step_around(parameter.grid, parameter.range, best.1.shape[index]);
-        for _ in 0..ROUNDS {
-            for way in [-1.0, 1.0] {
+    for _ in 0..rounds {
+        for side in &sides {
+            for _ in 0..MOST_STEPS {
                 let mut tried = best.1.clone();
-                tried.shape[index] = (tried.shape[index] + way * step).clamp(parameter.range.0, parameter.range.1);
-                if let Some(gained) = together(members, &tried)
-                    && gained > best.0
-                {
-                    best = (gained, tried);
+                for (index, parameter) in shapes.iter().enumerate() {
+                    let (low, high) = parameter.range;
+                    tried.shape[index] = (tried.shape[index] + side[index] * steps[index]).clamp(low, high);
+                }
+                if tried.shape == best.1.shape {
+                    break;
+                }
+                match gains(&tried).filter(|gained| *gained > best.0) {
+                    Some(gained) => best = (gained, tried),
+                    None => break,
                 }
             }
-            step *= 0.5;
         }
+        steps.iter_mut().for_each(|step| *step *= 0.5);
     }
     best.1
+}
+
+/// Ways to step among `n` shapes: along each, and along every two of them.
+fn sides(n: usize) -> Vec<Vec<f64>> {
+    let along = |moved: &[(usize, f64)]| {
+        let mut side = vec![0.0; n];
+        moved.iter().for_each(|&(index, way)| side[index] = way);
+        side
+    };
+    let mut sides = Vec::new();
+    for index in 0..n {
+        sides.extend([-1.0, 1.0].map(|way| along(&[(index, way)])));
+        for other in index + 1..n {
+            for way in [-1.0, 1.0] {
+                sides.extend([-1.0, 1.0].map(|other_way| along(&[(index, way), (other, other_way)])));
+            }
+        }
+    }
+    sides
 }
 
 /// Standard error of each shape of `guess`: the jackknife over muscles, which counts what no curvature of a fit does, that each
@@ -160,6 +211,19 @@ mod tests {
 
     fn estimate(mass_kg: f64, error_kg: f64) -> Estimate {
         Estimate { values: vec![200.0, mass_kg], errors: vec![None, Some(error_kg)] }
+    }
+
+    #[test]
+    fn shapes_that_make_up_for_one_another_are_found_both() {
+        let effect = pam_core::effects::effect("channel-delay").expect("an id");
+        let start = Guess { effect, shape: vec![0.005, 0.02], sign: Sign::Any, carried: false };
+        // A valley along the sum, which steps along one shape at a time do not get out of.
+        let gains = |guess: &Guess| {
+            let (pressure_s, length_s) = (guess.shape[0], guess.shape[1] - 0.025);
+            Some(-((pressure_s + length_s) / 1e-4).powi(2) - ((pressure_s - length_s) / 0.02).powi(2))
+        };
+        let found = descended(start.clone(), gains(&start).expect("a gain"), 1.0, ROUNDS, &gains);
+        assert!(found.shape[0].abs() < 5e-4 && (found.shape[1] - 0.025).abs() < 5e-4, "{found:?}");
     }
 
     #[test]

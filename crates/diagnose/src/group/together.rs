@@ -24,6 +24,10 @@ pub struct Group {
     pub muscles: Vec<Muscle>,
     /// Everything that was weighed of the rig, the best first.
     pub(super) candidates: Vec<RigCandidate>,
+    /// Ids of effects of the rig that would explain what was fitted, and that what was held out denies.
+    pub(super) denied: Vec<&'static str>,
+    /// Ids of effects of the rig that have a value of their own in nearly every muscle.
+    pub(super) apart: Vec<&'static str>,
 }
 
 /// A muscle of a group.
@@ -59,14 +63,15 @@ pub fn diagnose_group(requests: Vec<(String, Request)>, observer: &dyn Fn(u64, u
         alone.push(Alone { name, own, accept_implausible, diagnosis: diagnose(request)? });
         advance();
     }
-    let (rig, candidates) = of_the_rig(&alone)?;
+    let of_the_rig = of_the_rig(&alone)?;
     advance();
     let mut muscles = Vec::new();
     for (index, one) in alone.into_iter().enumerate() {
-        muscles.push(one.beside(index, &rig, &candidates)?);
+        muscles.push(one.beside(index, &of_the_rig)?);
         advance();
     }
-    Ok(Group { rig, muscles, candidates })
+    let OfTheRig { rig, candidates, denied, apart } = of_the_rig;
+    Ok(Group { rig, muscles, candidates, denied, apart })
 }
 
 /// A muscle with its diagnosis alone.
@@ -77,8 +82,20 @@ struct Alone {
     diagnosis: Diagnosis,
 }
 
-/// What the rig does to all of `alone`, and what was weighed.
-fn of_the_rig(alone: &[Alone]) -> Result<(Vec<Taken>, Vec<RigCandidate>), DiagnoseError> {
+/// What was found of a rig.
+struct OfTheRig {
+    /// What it does.
+    rig: Vec<Taken>,
+    /// Everything that was weighed before any was taken.
+    candidates: Vec<RigCandidate>,
+    /// Ids that what was held out denies.
+    denied: Vec<&'static str>,
+    /// Ids with a value of their own in nearly every muscle.
+    apart: Vec<&'static str>,
+}
+
+/// What the rig does to all of `alone`.
+fn of_the_rig(alone: &[Alone]) -> Result<OfTheRig, DiagnoseError> {
     let mut questions = Vec::new();
     for one in alone {
         let Diagnosis { estimation, holdout, model, config, .. } = &one.diagnosis;
@@ -86,7 +103,7 @@ fn of_the_rig(alone: &[Alone]) -> Result<(Vec<Taken>, Vec<RigCandidate>), Diagno
         questions.push(Question::new(estimation, model, limits));
     }
     let mut rig: Vec<Taken> = Vec::new();
-    let mut candidates = Vec::new();
+    let (mut candidates, mut denied, mut apart) = (Vec::new(), Vec::new(), Vec::new());
     while rig.len() < MOST {
         let mut members = Vec::new();
         for (index, (one, question)) in alone.iter().zip(&questions).enumerate() {
@@ -102,10 +119,18 @@ fn of_the_rig(alone: &[Alone]) -> Result<(Vec<Taken>, Vec<RigCandidate>), Diagno
         if rig.is_empty() {
             candidates = found.iter().map(candidate).collect();
         }
-        let Some(next) = taken(&members, &found) else { break };
+        let outcome = taken(&members, &found, (!rig.is_empty()).then_some(&candidates));
+        denied.extend(outcome.denied);
+        apart.extend(outcome.apart);
+        let Some(next) = outcome.taken else { break };
         rig.push(next);
     }
-    Ok((rig, candidates))
+    for ids in [&mut denied, &mut apart] {
+        ids.sort_unstable();
+        ids.dedup();
+        ids.retain(|id| rig.iter().all(|taken| taken.guess.id() != *id));
+    }
+    Ok(OfTheRig { rig, candidates, denied, apart })
 }
 
 fn candidate(shared: &Shared) -> RigCandidate {
@@ -122,17 +147,17 @@ fn terms(rig: &[Taken], index: usize) -> Vec<Term> {
 }
 
 impl Alone {
-    /// The muscle, which is number `index`, beside `rig`.
-    fn beside(self, index: usize, rig: &[Taken], candidates: &[RigCandidate]) -> Result<Muscle, DiagnoseError> {
+    /// The muscle, which is number `index`, beside what its rig does.
+    fn beside(self, index: usize, of_the_rig: &OfTheRig) -> Result<Muscle, DiagnoseError> {
         let Self { name, own, accept_implausible, diagnosis: mut alone } = self;
         let alone_agreement = Agreement::of(&alone)?;
         let ids: Vec<String> = alone.effects.iter().map(|effect| effect.id.clone()).collect();
-        let rig_terms = terms(rig, index);
+        let rig_terms = terms(&of_the_rig.rig, index);
         let excluded: Vec<&str> = CATALOGUE
             .iter()
             .filter(|effect| is_of_the_rig(**effect))
             .map(|effect| effect.page().id)
-            .filter(|id| !is_its_own(id, index, &ids, rig, candidates))
+            .filter(|id| !of_the_rig.apart.contains(id) && !is_its_own(id, index, &ids, of_the_rig))
             .collect();
         if rig_terms.is_empty() && !ids.iter().any(|id| excluded.contains(&id.as_str())) {
             alone.weigh(&alone_agreement)?;
@@ -157,7 +182,8 @@ impl Alone {
 
 /// Whether the effect of a rig called `id`, which muscle `index` alone names, is its own: other muscles speak against it, and
 /// none for it.
-fn is_its_own(id: &str, index: usize, named: &[String], rig: &[Taken], candidates: &[RigCandidate]) -> bool {
+fn is_its_own(id: &str, index: usize, named: &[String], of_the_rig: &OfTheRig) -> bool {
+    let OfTheRig { rig, candidates, .. } = of_the_rig;
     let is_taken = rig.iter().any(|taken| taken.guess.id() == id);
     let each = candidates.iter().find(|candidate| candidate.id == id).map_or(&[][..], |candidate| &candidate.each);
     let others = || each.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, log_ratio)| *log_ratio);

@@ -4,14 +4,22 @@ use std::collections::BTreeMap;
 
 use pam_core::artifact::group::{GroupMuscle, RigEffect, Says};
 
+use super::together::Group;
+
 /// What was found, in one paragraph: the rig, then what muscles have of their own.
-pub(super) fn statement(rig: &[RigEffect], muscles: &[GroupMuscle]) -> String {
+pub(super) fn statement(rig: &[RigEffect], muscles: &[GroupMuscle], group: &Group) -> String {
     let mut sentences = Vec::new();
     if rig.is_empty() {
         sentences.push(format!("The {} muscles together show no effect of the rig.", muscles.len()));
     }
     for effect in rig {
         sentences.push(of_the_rig(effect));
+    }
+    for id in &group.denied {
+        sentences.push(format!("Held-out recordings do not show {id}, which would explain the fitted ones."));
+    }
+    for id in &group.apart {
+        sentences.push(format!("What looks like {id} has another value in every muscle: it is not of one rig."));
     }
     let mut own: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for muscle in muscles {
@@ -20,7 +28,8 @@ pub(super) fn statement(rig: &[RigEffect], muscles: &[GroupMuscle]) -> String {
         }
     }
     for (id, names) in own {
-        sentences.push(format!("{}: {id}.", names.join(", ")));
+        let (have, their) = if names.len() == 1 { ("has", "its") } else { ("have", "their") };
+        sentences.push(format!("{} {have} {id} of {their} own.", names.join(", ")));
     }
     sentences.join(" ")
 }

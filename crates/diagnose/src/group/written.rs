@@ -2,7 +2,7 @@
 
 use pam_core::artifact::diagnosis::{DiagnoseConfig, Verdict};
 use pam_core::artifact::group::{
-    GroupArtifact, GroupMuscle, GroupResidual, InMuscle, RigCandidate, RigEffect, SCHEMA, Says,
+    GroupArtifact, GroupMuscle, GroupResidual, HeldOutShare, InMuscle, RigEffect, SCHEMA, Says,
 };
 use pam_core::artifact::model::ParameterEntry;
 
@@ -13,6 +13,7 @@ use super::words;
 use crate::artifact::{Agreement, Head};
 use crate::hypothesis::Guess;
 use crate::uncertainty::entry;
+use crate::veto::Share;
 
 impl Group {
     /// For other programs and for people; `config` is what was asked for.
@@ -26,11 +27,13 @@ impl Group {
             inputs: head.inputs,
             config,
             seed: head.seed,
-            statement: words::statement(&rig, &muscles),
+            statement: words::statement(&rig, &muscles, self),
             warnings: words::warnings(&rig, &muscles),
             rig,
             muscles,
-            candidates: self.candidates.iter().map(RigCandidate::clone).collect(),
+            candidates: self.candidates.clone(),
+            denied: self.denied.iter().map(|&id| id.to_owned()).collect(),
+            apart: self.apart.iter().map(|&id| id.to_owned()).collect(),
         }
     }
 
@@ -54,15 +57,21 @@ fn effect(taken: &Taken, names: &[&str]) -> RigEffect {
         parameters: entries(&taken.guess, &taken.shared),
         log_ratio: taken.each.iter().map(|has| has.worth.log_ratio).sum(),
         muscles: taken.each.iter().zip(names).map(|(has, name)| in_muscle(has, name)).collect(),
+        held_out: taken.held.map(held_out),
         alternatives: taken.rivals.iter().map(|&id| id.to_owned()).collect(),
         separating_test: confused.map_or(page.test, |confusion| confusion.test).to_owned(),
     }
 }
 
 fn in_muscle(has: &Has, name: &str) -> InMuscle {
-    let told = has.own.as_ref().filter(|_| has.says == Says::Differs || has.says == Says::Shows);
+    let told = has.estimate().filter(|_| has.says == Says::Differs || has.says == Says::Shows);
     let own = told.map_or_else(Vec::new, |own| entries(&has.guess, own));
-    InMuscle { muscle: name.to_owned(), says: has.says, log_ratio: has.worth.log_ratio, own }
+    let held_out = has.own.as_ref().and_then(|own| own.held).map(held_out);
+    InMuscle { muscle: name.to_owned(), says: has.says, log_ratio: has.worth.log_ratio, held_out, own }
+}
+
+fn held_out(share: Share) -> HeldOutShare {
+    HeldOutShare { share: share.value, stderr: share.error }
 }
 
 /// Shapes, then amplitudes.
