@@ -24,15 +24,22 @@ const MUSCLES: [(&str, Change); 3] = [
     ("stiff", |parameters| parameters.c10_pa *= 1.2),
 ];
 
-/// A rig with three muscles; in all of them `concealed`.
-fn rig(concealed: &[Concealed]) -> Desk {
+/// A rig with three muscles, in all of them `concealed`; where something is `held_out`, with that concealed instead.
+fn rig(concealed: &[Concealed], held_out: Option<&[Concealed]>) -> Desk {
     let desk = Desk::empty();
     let mut text = String::new();
+    let quoted = |series: &str| logs(series).replace(' ', "\", \"");
     for (index, (name, set)) in MUSCLES.into_iter().enumerate() {
-        desk.record(name, concealed, None, 1 + 10 * index as u64, set);
+        let seed = 1 + 10 * index as u64;
+        desk.record(name, concealed, None, seed, set);
         desk.identify(name, &format!("{name}.json"));
-        let logs = logs(name).replace(' ', "\", \"");
-        text += &format!("[[muscle]]\nname = \"{name}\"\nmodel = \"{name}.json\"\nlogs = [\"{logs}\"]\n");
+        text +=
+            &format!("[[muscle]]\nname = \"{name}\"\nmodel = \"{name}.json\"\nlogs = [\"{}\"]\n", quoted(name));
+        if let Some(held_out) = held_out {
+            let later = format!("{name}-later");
+            desk.record(&later, held_out, None, seed + 5, set);
+            text += &format!("holdout = [\"{}\"]\n", quoted(&later));
+        }
     }
     std::fs::write(desk.path("rig.toml"), text).unwrap();
     desk
@@ -40,7 +47,7 @@ fn rig(concealed: &[Concealed]) -> Desk {
 
 fn plain() -> &'static Desk {
     static DESK: OnceLock<Desk> = OnceLock::new();
-    DESK.get_or_init(|| rig(&[]))
+    DESK.get_or_init(|| rig(&[], None))
 }
 
 fn found(desk: &Desk, arguments: &str) -> GroupArtifact {
@@ -59,8 +66,8 @@ fn nothing_is_said_of_a_rig_that_does_nothing() {
 
 #[test]
 fn a_delay_of_the_rig_is_named_once_with_one_value_for_all_muscles() {
-    let desk = rig(&[Concealed::new("channel-delay", 1.0)]);
-    let found = found(&desk, "");
+    let delay = [Concealed::new("channel-delay", 1.0)];
+    let found = found(&rig(&delay, None), "");
     let ids: Vec<&str> = found.rig.iter().map(|effect| effect.id.as_str()).collect();
     assert_eq!(ids, ["channel-delay"], "{}", found.statement);
     assert!(found.rig[0].muscles.iter().filter(|one| one.says == Says::Shows).count() >= 2, "{}", found.statement);
@@ -68,6 +75,23 @@ fn a_delay_of_the_rig_is_named_once_with_one_value_for_all_muscles() {
     for muscle in &found.muscles {
         assert!(muscle.estimation.together_n < muscle.estimation.base_n, "{muscle:?}");
     }
+}
+
+#[test]
+fn held_out_recordings_confirm_an_effect_of_the_rig_or_deny_it() {
+    let delay = [Concealed::new("channel-delay", 1.0)];
+    let confirmed = found(&rig(&delay, Some(&delay)), "");
+    let [effect] = &confirmed.rig[..] else { panic!("{}", confirmed.statement) };
+    let held_out = effect.held_out.unwrap();
+    assert!((held_out.share - 1.0).abs() < 0.3, "{held_out:?}");
+    for muscle in &confirmed.muscles {
+        let residual = muscle.holdout.unwrap();
+        assert!(residual.together_n < 1.05 * residual.alone_n, "{residual:?}");
+    }
+    let denied = found(&rig(&delay, Some(&[])), "");
+    assert!(denied.rig.is_empty() && denied.denied == ["channel-delay"], "{}", denied.statement);
+    assert!(denied.statement.contains("Held-out recordings do not show channel-delay"), "{}", denied.statement);
+    assert!(denied.muscles.iter().all(|muscle| muscle.effects.is_empty()), "{}", denied.statement);
 }
 
 #[test]
