@@ -21,7 +21,7 @@ const LEAST_OF_OTHERS: f64 = 1.5;
 const LEAST_ALONE: f64 = 1.5;
 /// Muscles that share a value, at least.
 const LEAST_MUSCLES: usize = 2;
-/// Share of what is left beyond the sensors that it must explain in all muscles together.
+/// Share of what is left beyond the sensors that it must explain in the muscles that show it, on average.
 const LEAST_SHARE: f64 = 0.1;
 
 /// An effect of the rig that was taken.
@@ -114,18 +114,18 @@ fn stands(members: &[Member<'_>], shared: &Shared) -> bool {
     let most = shared.each.iter().map(|worth| worth.log_ratio).fold(f64::NEG_INFINITY, f64::max);
     let shown = shared.each.iter().filter(|worth| worth.log_ratio > SHOWS).count();
     let denied = shared.each.iter().filter(|worth| worth.log_ratio < -TELLS).count();
-    let (mut gained, mut left) = (0.0, 0.0);
-    for (member, worth) in members.iter().zip(&shared.each) {
-        // In units of each muscle's sensors, so that the strongest does not decide alone.
-        let square = member.floor_square().max(f64::MIN_POSITIVE);
-        gained += member.n_counted() as f64 * (worth.without - worth.with) / square;
-        left += member.n_counted() as f64 * (worth.without - member.floor_square()).max(0.0) / square;
-    }
+    // Every muscle alike, so that the one that eq. 11 misses most does not decide alone.
+    let each = members.iter().zip(&shared.each).filter(|(_, worth)| worth.log_ratio > SHOWS);
+    let shares = each.map(|(member, worth)| {
+        let left = (worth.without - member.floor_square()).max(f64::MIN_POSITIVE);
+        ((worth.without - worth.with) / left).clamp(0.0, 1.0)
+    });
+    let share = shares.sum::<f64>() / shown.max(1) as f64;
     let log_ratio = shared.log_ratio();
     log_ratio > LEAST_LOG_RATIO
         && log_ratio - most > LEAST_OF_OTHERS
         && shown > 2 * denied
-        && gained > LEAST_SHARE * left
+        && share > LEAST_SHARE
 }
 
 /// What each muscle has of `shared`; those with a value of their own have no part in the shared one.

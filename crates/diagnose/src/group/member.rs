@@ -178,11 +178,6 @@ impl<'a> Member<'a> {
         Some(Worth { log_ratio: kept * gained, without: without_square, with: with_square })
     }
 
-    /// Instants that count.
-    pub(super) fn n_counted(&self) -> usize {
-        self.track.n_counted()
-    }
-
     /// What the sensors leave, in N².
     pub(super) fn floor_square(&self) -> f64 {
         self.question.limits.sensor_floor_n.powi(2)

@@ -74,6 +74,7 @@ pub(super) fn warnings(rig: &[RigEffect], muscles: &[GroupMuscle]) -> Vec<String
             }
         }
     }
+    warnings.extend(rig.iter().flat_map(|effect| confused_in_all(effect, muscles)));
     for muscle in muscles {
         if let Some(holdout) = muscle.holdout
             && holdout.together_n > 1.1 * holdout.alone_n.max(holdout.noise_floor_n)
@@ -85,4 +86,16 @@ pub(super) fn warnings(rig: &[RigEffect], muscles: &[GroupMuscle]) -> Vec<String
         }
     }
     warnings
+}
+
+/// Names that every muscle has of its own and that are confused with `effect` of the rig: each may be a part of it.
+fn confused_in_all(effect: &RigEffect, muscles: &[GroupMuscle]) -> Vec<String> {
+    let Some(of_the_rig) = pam_core::effects::effect(&effect.id) else { return Vec::new() };
+    let is_everywhere = |id: &str| muscles.iter().all(|muscle| muscle.effects.iter().any(|own| own.id == id));
+    let confused = of_the_rig.page().confused_with.iter().filter(|confusion| is_everywhere(confusion.id));
+    let said = confused.map(|confusion| {
+        let (id, of_rig, test) = (confusion.id, &effect.id, confusion.test);
+        format!("every muscle has {id} beside {of_rig} of the rig, which it is easily confused with: {test}")
+    });
+    said.collect()
 }
