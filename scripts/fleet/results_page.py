@@ -93,8 +93,8 @@ def together(group):
 def two_lengths(real):
     """Two real muscles of one make."""
     lines = ["Two lengths of one make that somebody recorded on one rig (`scripts/fetch-recordings`), one repeat of each length fitted and one "
-             f"held out: {real['statement']}", "",
+             f"held out, RMSE over all samples: {real['statement']}", "",
              "| muscle | a single diagnosis names | held out: eq. 11 | alone | together | sensors |", "|---|---|---:|---:|---:|---:|"]
-    lines += [f"| {one['name']} | {', '.join(one['alone']) or '-'} | {one['base_n']:.2f} N | {one['alone_n']:.2f} N | {one['together_n']:.2f} N "
+    lines += [f"| {one['name']} | {', '.join(one['alone']) or '-'} | {one['base_all_n']:.2f} N | {one['alone_all_n']:.2f} N | {one['together_all_n']:.2f} N "
               f"| {one['noise_floor_n']:.2f} N |" for one in real["muscles"]]
     return [*lines, ""]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure};
 use pam_cli::{Console, Output, publish, read_recordings};
-use pam_core::artifact::group::{GroupArtifact, GroupMuscle, RigEffect, Says};
+use pam_core::artifact::group::{GroupArtifact, GroupMuscle, HeldOutShare, RigEffect, Says};
 use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, readable_json, sha256_hex};
 use pam_core::group::{GroupMember, group_members};
 use pam_core::spelling::unreadable;
@@ -142,18 +142,26 @@ fn effect_of_the_rig(effect: &RigEffect) -> String {
     for other in &effect.alternatives {
         table.row([format!("  or {other}")]);
     }
+    if let Some(HeldOutShare { share, stderr }) = effect.held_out {
+        let shown = format!("({:.0} ± {:.0}) % of its size", 100.0 * share, 100.0 * stderr);
+        table.row(["  held-out recordings".to_owned(), shown]);
+    }
     table.to_terminal()
 }
 
 fn muscles(muscles: &[GroupMuscle]) -> String {
-    let mut table = Table::new(["muscle", "of its own", "RMSE eq. 11 N", "alone N", "together N"]);
+    let head = ["muscle", "of its own", "RMSE, all samples", "eq. 11 N", "alone N", "together N"];
+    let mut table = Table::new(head);
     for muscle in muscles {
         let own: Vec<&str> = muscle.effects.iter().map(|effect| effect.id.as_str()).collect();
         let own = if own.is_empty() { "-".to_owned() } else { own.join(", ") };
-        let residual = muscle.holdout.unwrap_or(muscle.estimation);
-        let numbers = [residual.base_n, residual.alone_n, residual.together_n].map(|number| significant(number, 3));
-        let [base, alone, together] = numbers;
-        table.row([muscle.name.clone(), own, base, alone, together]);
+        let (on, residual) = match muscle.holdout {
+            Some(holdout) => ("held out", holdout),
+            None => ("fitted", muscle.estimation),
+        };
+        let numbers = [residual.base_all_n, residual.alone_all_n, residual.together_all_n];
+        let [base, alone, together] = numbers.map(|number| significant(number, 3));
+        table.row([muscle.name.clone(), own, on.to_owned(), base, alone, together]);
     }
     table.to_terminal()
 }

@@ -33,8 +33,7 @@ fn rig(concealed: &[Concealed], held_out: Option<&[Concealed]>) -> Desk {
         let seed = 1 + 10 * index as u64;
         desk.record(name, concealed, None, seed, set);
         desk.identify(name, &format!("{name}.json"));
-        text +=
-            &format!("[[muscle]]\nname = \"{name}\"\nmodel = \"{name}.json\"\nlogs = [\"{}\"]\n", quoted(name));
+        text += &format!("[[muscle]]\nname = \"{name}\"\nmodel = \"{name}.json\"\nlogs = [\"{}\"]\n", quoted(name));
         if let Some(held_out) = held_out {
             let later = format!("{name}-later");
             desk.record(&later, held_out, None, seed + 5, set);

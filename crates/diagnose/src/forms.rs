@@ -134,7 +134,8 @@ impl Bending<'_> {
             let over = over_quantiles(self.coordinates.of_kind(own), &track.counted);
             for degree in 1..=LIVES {
                 for force_n in [own_n, &self.friction_n] {
-                    forms.push(force_n.iter().zip(&over).map(|(force, over)| force * legendre(degree, *over)).collect());
+                    forms
+                        .push(force_n.iter().zip(&over).map(|(force, over)| force * legendre(degree, *over)).collect());
                 }
             }
         }

@@ -79,6 +79,9 @@ pub struct InMuscle {
     pub held_out: Option<HeldOutShare>,
     /// The values that it has by itself where it differs, and its own amplitudes beside the shared shape otherwise, SI.
     pub own: Vec<ParameterEntry>,
+    /// Whether the muscle is followed with it: not where its recordings speak against it, nor where it leaves more of what was
+    /// fitted than nothing does, as the noise of a channel can make it.
+    pub in_model: bool,
 }
 
 /// Share of its fitted size with which held-out recordings show an effect: 1 confirms it, 0 denies it.
@@ -125,16 +128,22 @@ pub struct GroupMuscle {
     pub holdout: Option<GroupResidual>,
 }
 
-/// Root mean square residual over counted samples, in N.
+/// Root mean square residual, in N; `all` over excluded samples as well.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GroupResidual {
     /// Of eq. 11, refitted.
     pub base_n: f64,
+    /// The same over all samples.
+    pub base_all_n: f64,
     /// Of what a diagnosis of this muscle alone names.
     pub alone_n: f64,
+    /// The same over all samples.
+    pub alone_all_n: f64,
     /// Of what the rig does and the muscle's own effects.
     pub together_n: f64,
+    /// The same over all samples.
+    pub together_all_n: f64,
     /// What the sensors leave of a perfect model.
     pub noise_floor_n: f64,
 }

@@ -122,10 +122,7 @@ fn stands(members: &[Member<'_>], shared: &Shared) -> bool {
     });
     let share = shares.sum::<f64>() / shown.max(1) as f64;
     let log_ratio = shared.log_ratio();
-    log_ratio > LEAST_LOG_RATIO
-        && log_ratio - most > LEAST_OF_OTHERS
-        && shown > 2 * denied
-        && share > LEAST_SHARE
+    log_ratio > LEAST_LOG_RATIO && log_ratio - most > LEAST_OF_OTHERS && shown > 2 * denied && share > LEAST_SHARE
 }
 
 /// What each muscle has of `shared`; those with a value of their own have no part in the shared one.

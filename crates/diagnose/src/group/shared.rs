@@ -72,13 +72,7 @@ pub(super) fn polished(members: &[&Member<'_>], guess: Guess) -> Guess {
 
 /// `guess`, which gains `gained`, with shapes that gain most by `gains`: steps to all sides, one shape or two at a time, since
 /// one of two delays makes up for the other. The first are `share` of the distance on the grid, half as long in every round.
-fn descended(
-    guess: Guess,
-    gained: f64,
-    share: f64,
-    rounds: usize,
-    gains: &dyn Fn(&Guess) -> Option<f64>,
-) -> Guess {
+fn descended(guess: Guess, gained: f64, share: f64, rounds: usize, gains: &dyn Fn(&Guess) -> Option<f64>) -> Guess {
     let shapes = guess.effect.shape();
     let step = |(parameter, &value): (&Shape, &f64)| share * step_around(parameter.grid, parameter.range, value);
     let mut steps: Vec<f64> = shapes.iter().zip(&guess.shape).map(step).collect();

@@ -6,7 +6,7 @@ use pam_core::effects::{CATALOGUE, Effect, Term};
 use super::look::{TELLS, Taken, look, taken};
 use super::member::Member;
 use super::shared::Shared;
-use crate::artifact::Agreement;
+use crate::artifact::{Agreement, together};
 use crate::diagnose::{Diagnosis, Request, diagnose, limits};
 use crate::error::DiagnoseError;
 use crate::question::Question;
@@ -164,20 +164,31 @@ impl Alone {
             let agreement = alone_agreement.clone();
             return Ok(Muscle { name, alone: ids, alone_agreement, together: alone, agreement });
         }
-        let Diagnosis { estimation, holdout, model, mut config, .. } = alone;
+        let named_of_the_rig = ids.iter().any(|id| excluded.contains(&id.as_str()));
+        let mut config = alone.config.clone();
         config.excluded.extend(excluded.into_iter().map(str::to_owned));
         config.excluded.sort();
         config.excluded.dedup();
-        let recordings = |prepared: Vec<pam_identification::prepare::Prepared>| {
-            prepared.into_iter().map(|prepared| prepared.recording).collect()
+        let recordings = |prepared: &[pam_identification::prepare::Prepared]| {
+            prepared.iter().map(|prepared| prepared.recording.clone()).collect()
         };
-        let (estimation, holdout) = (recordings(estimation), recordings(holdout));
+        let (estimation, holdout) = (recordings(&alone.estimation), recordings(&alone.holdout));
+        let model = alone.model.clone();
         let request = Request { estimation, holdout, model, config, effects: own, rig: rig_terms, accept_implausible };
         let mut together = diagnose(request)?;
-        let agreement = Agreement::of(&together)?;
+        let mut agreement = Agreement::of(&together)?;
+        // What is right on the grid may leave more at the full rate, as a mass makes of a noisy length.
+        if !named_of_the_rig && left_n(&agreement) > left_n(&alone_agreement) {
+            (together, agreement) = (alone, alone_agreement.clone());
+        }
         together.weigh(&agreement)?;
         Ok(Muscle { name, alone: ids, alone_agreement, together, agreement })
     }
+}
+
+/// What `agreement` leaves of what was fitted, in N.
+fn left_n(agreement: &Agreement) -> f64 {
+    together(&agreement.estimation).rmse_n
 }
 
 /// Whether the effect of a rig called `id`, which muscle `index` alone names, is its own: other muscles speak against it, and

@@ -61,6 +61,12 @@ pub(super) fn warnings(rig: &[RigEffect], muscles: &[GroupMuscle]) -> Vec<String
     let mut warnings = Vec::new();
     for effect in rig {
         for one in &effect.muscles {
+            if !one.in_model && one.says != Says::Denies {
+                warnings.push(format!(
+                    "{}: {} leaves more of its recordings than nothing does; it is followed without it",
+                    one.muscle, effect.id
+                ));
+            }
             match one.says {
                 Says::Differs => warnings.push(format!(
                     "{}: {} differs from what the other muscles share; look at what was changed on the rig for it",
@@ -77,11 +83,11 @@ pub(super) fn warnings(rig: &[RigEffect], muscles: &[GroupMuscle]) -> Vec<String
     warnings.extend(rig.iter().flat_map(|effect| confused_in_all(effect, muscles)));
     for muscle in muscles {
         if let Some(holdout) = muscle.holdout
-            && holdout.together_n > 1.1 * holdout.alone_n.max(holdout.noise_floor_n)
+            && holdout.together_all_n > 1.1 * holdout.alone_all_n.max(holdout.noise_floor_n)
         {
             warnings.push(format!(
                 "{}: what the muscles share leaves {:.2} N of what was held out, its own diagnosis {:.2} N",
-                muscle.name, holdout.together_n, holdout.alone_n
+                muscle.name, holdout.together_all_n, holdout.alone_all_n
             ));
         }
     }

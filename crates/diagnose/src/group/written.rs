@@ -6,11 +6,13 @@ use pam_core::artifact::group::{
 };
 use pam_core::artifact::model::ParameterEntry;
 
+use pam_identification::evaluate::Evaluation;
+
 use super::look::{Has, Taken};
 use super::member::Estimate;
 use super::together::{Group, Muscle};
 use super::words;
-use crate::artifact::{Agreement, Head};
+use crate::artifact::{Agreement, Head, together};
 use crate::hypothesis::Guess;
 use crate::uncertainty::entry;
 use crate::veto::Share;
@@ -18,8 +20,7 @@ use crate::veto::Share;
 impl Group {
     /// For other programs and for people; `config` is what was asked for.
     pub fn artifact(&self, head: Head, config: DiagnoseConfig) -> GroupArtifact {
-        let names: Vec<&str> = self.muscles.iter().map(|muscle| muscle.name.as_str()).collect();
-        let rig: Vec<RigEffect> = self.rig.iter().map(|taken| effect(taken, &names)).collect();
+        let rig: Vec<RigEffect> = self.rig.iter().map(|taken| effect(taken, &self.muscles)).collect();
         let muscles: Vec<GroupMuscle> = self.muscles.iter().map(muscle).collect();
         GroupArtifact {
             schema: SCHEMA.to_owned(),
@@ -46,7 +47,7 @@ impl Group {
     }
 }
 
-fn effect(taken: &Taken, names: &[&str]) -> RigEffect {
+fn effect(taken: &Taken, muscles: &[Muscle]) -> RigEffect {
     let page = taken.guess.effect.page();
     let confusion = |id: &&str| page.confused_with.iter().find(|confusion| confusion.id == *id);
     let confused = taken.rivals.iter().find_map(confusion);
@@ -56,18 +57,26 @@ fn effect(taken: &Taken, names: &[&str]) -> RigEffect {
         equation: page.equation.to_owned(),
         parameters: entries(&taken.guess, &taken.shared),
         log_ratio: taken.each.iter().map(|has| has.worth.log_ratio).sum(),
-        muscles: taken.each.iter().zip(names).map(|(has, name)| in_muscle(has, name)).collect(),
+        muscles: taken.each.iter().zip(muscles).map(|(has, muscle)| in_muscle(has, muscle)).collect(),
         held_out: taken.held.map(held_out),
         alternatives: taken.rivals.iter().map(|&id| id.to_owned()).collect(),
         separating_test: confused.map_or(page.test, |confusion| confusion.test).to_owned(),
     }
 }
 
-fn in_muscle(has: &Has, name: &str) -> InMuscle {
+fn in_muscle(has: &Has, muscle: &Muscle) -> InMuscle {
     let told = has.estimate().filter(|_| has.says == Says::Differs || has.says == Says::Shows);
     let own = told.map_or_else(Vec::new, |own| entries(&has.guess, own));
     let held_out = has.own.as_ref().and_then(|own| own.held).map(held_out);
-    InMuscle { muscle: name.to_owned(), says: has.says, log_ratio: has.worth.log_ratio, held_out, own }
+    let terms = muscle.together.augmented.terms();
+    InMuscle {
+        muscle: muscle.name.clone(),
+        says: has.says,
+        log_ratio: has.worth.log_ratio,
+        held_out,
+        own,
+        in_model: terms.iter().any(|term| term.effect.page().id == has.guess.id()),
+    }
 }
 
 fn held_out(share: Share) -> HeldOutShare {
@@ -94,25 +103,23 @@ fn muscle(muscle: &Muscle) -> GroupMuscle {
         statement: together.statement.clone(),
         effects: together.effects.clone(),
         alone: muscle.alone.clone(),
-        estimation: residual(muscle, |agreement| (agreement.base_estimation.together, agreement.estimation.together))
-            .unwrap_or(GroupResidual { base_n: 0.0, alone_n: 0.0, together_n: 0.0, noise_floor_n: 0.0 }),
-        holdout: residual(muscle, |agreement| (agreement.base_holdout.together, agreement.holdout.together)),
+        estimation: residual(muscle, |agreement| (&agreement.base_estimation, &agreement.estimation)),
+        holdout: (!together.holdout.is_empty())
+            .then(|| residual(muscle, |agreement| (&agreement.base_holdout, &agreement.holdout))),
     }
 }
 
 /// Residuals of base and model that `of` picks.
-fn residual(
-    muscle: &Muscle,
-    of: impl Fn(
-        &Agreement,
-    ) -> (Option<pam_core::artifact::model::FitStatistics>, Option<pam_core::artifact::model::FitStatistics>),
-) -> Option<GroupResidual> {
+fn residual(muscle: &Muscle, of: impl Fn(&Agreement) -> (&Evaluation, &Evaluation)) -> GroupResidual {
     let (base, alone) = of(&muscle.alone_agreement);
-    let (_, together) = of(&muscle.agreement);
-    Some(GroupResidual {
-        base_n: base?.rmse_n,
-        alone_n: alone?.rmse_n,
-        together_n: together?.rmse_n,
+    let (base, alone, both) = (together(base), together(alone), together(of(&muscle.agreement).1));
+    GroupResidual {
+        base_n: base.rmse_n,
+        base_all_n: base.rmse_all_n,
+        alone_n: alone.rmse_n,
+        alone_all_n: alone.rmse_all_n,
+        together_n: both.rmse_n,
+        together_all_n: both.rmse_all_n,
         noise_floor_n: muscle.agreement.noise_floor_n,
-    })
+    }
 }
