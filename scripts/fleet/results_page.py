@@ -75,13 +75,14 @@ def together(group):
         "## Muscles of one rig together", "",
         "`pam-diagnose --group` on five muscles of the independent bench to a rig (`scripts/fleet/prove-group`), with other laws, sensors "
         "and protocols in each. A rig's effect is done to the columns of all of them, with one value; controls have none, every "
-        "other one a muscle with an effect of its own. False: names of rigs' effects that are not there.", "",
+        "other one a muscle with an effect of its own. False: names of rigs' effects that are not there. Thresholds were chosen on rigs of "
+        f"other seeds; these are from {group['first']} on, judged once.", "",
         "| | concealed | named | false | in controls | false |", "|---|---:|---:|---:|---:|---:|",
         f"| rigs, muscles together | {group['rigs']} | {group['named']} | {group['false']} | {group['sound']} | {group['false_sound']} |",
         f"| muscles, each alone | {group['muscles_concealed']} | {group['named_alone']} | {group['false_alone_concealed']} "
         f"| {group['muscles'] - group['muscles_concealed']} | {group['false_alone_sound']} |",
         "", f"Beside what the rig does, {group['false_own']} of {group['muscles']} muscles keep a name of a rig's effect. What was held out "
-        f"(root mean square over the muscles of a rig) is followed worse than by single diagnoses, by more than 1 %, on {group['worse']} of "
+        f"(RMSE over all samples, root mean square over the muscles of a rig) is followed worse than by single diagnoses, by more than 1 %, on {group['worse']} of "
         f"{group['rigs'] + group['sound']} rigs.",
     ]
     for title, key in (("Missed", "missed"), ("Said of what is not there", "said")):

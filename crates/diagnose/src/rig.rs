@@ -81,9 +81,12 @@ pub(crate) fn entry(term: &Term) -> EffectEntry {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hypothesis::Guess;
     use crate::rehearsal::tests::Given;
+    use crate::search::{Limits, search};
+    use crate::state::Setting;
 
-    use pam_core::effects::effect;
+    use pam_core::effects::{CATALOGUE, effect};
 
     /// Largest difference of pressures and forces between two tracks of the same instants.
     fn apart(left: &Track, right: &Track) -> (f64, f64) {
@@ -108,6 +111,25 @@ mod tests {
     }
 
     #[test]
+    fn what_is_left_of_a_value_that_is_not_exactly_right_gets_no_name() {
+        let mut given =
+            Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[("pressure-lag", &[0.15], &[])]);
+        given.disturb();
+        let lag = Term { effect: effect("pressure-lag").expect("an id"), shape: vec![0.11], amplitudes: Vec::new() };
+        let track = without(given.track.clone(), &[lag], &given.model);
+        let of_the_rig = CATALOGUE.iter().filter(|effect| is_of_the_rig(**effect));
+        let excluded = of_the_rig.map(|effect| effect.page().id.to_owned()).collect();
+        let limits = Limits { excluded, ..Limits::of_test(3, 0.3) };
+        let named = |track: &Track| -> Vec<&str> {
+            let setting = Setting { track, floor_square: 0.09, ..given.setting() };
+            let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
+            found.best.state.guesses.iter().map(Guess::id).collect()
+        };
+        assert_eq!(named(&track), Vec::<&str>::new());
+        assert!(!named(&Track { known_forms_n: Vec::new(), ..track }).is_empty());
+    }
+
+    #[test]
     fn nothing_known_leaves_the_track_as_it_is_and_a_lag_changes_its_pressures() {
         let given = Given::of(&["multisine"], &[]);
         let lag = Term { effect: effect("pressure-lag").expect("an id"), shape: vec![0.1], amplitudes: Vec::new() };
@@ -117,11 +139,8 @@ mod tests {
 
     #[test]
     fn delays_compliance_and_masses_are_the_rigs_and_friction_is_not() {
-        let shared: Vec<&str> = pam_core::effects::CATALOGUE
-            .iter()
-            .filter(|effect| is_of_the_rig(**effect))
-            .map(|effect| effect.page().id)
-            .collect();
+        let shared: Vec<&str> =
+            CATALOGUE.iter().filter(|effect| is_of_the_rig(**effect)).map(|effect| effect.page().id).collect();
         assert_eq!(
             shared,
             [
