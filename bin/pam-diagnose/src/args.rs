@@ -24,6 +24,8 @@ use pam_diagnosis::diagnose::MAX_EFFECTS;
                   pam-diagnose run1.csv --model model.json --isolability --next-experiment setpoints.csv\n\n\
                   Example: the same muscle a month later; what has changed since\n  \
                   pam-diagnose later1.csv later2.csv --since augmented.json --out change.json --report change.html\n\n\
+                  Example: muscles of one rig together; what the rig does to all of them\n  \
+                  pam-diagnose --group rig.toml --out group.json\n\n\
                   Example: what an effect is and what it looks like\n  \
                   pam-diagnose --explain stribeck --figure stribeck.svg\n\n\
                   Example: an effect of your own among the candidates\n  \
@@ -34,11 +36,11 @@ use pam_diagnosis::diagnose::MAX_EFFECTS;
 )]
 pub(crate) struct Args {
     /// Recordings to diagnose; - is standard input.
-    #[arg(value_name = "LOG", required_unless_present = "explain")]
+    #[arg(value_name = "LOG", required_unless_present_any = ["explain", "group"])]
     pub(crate) logs: Vec<PathBuf>,
 
     /// Model in question, as pam-identify wrote it.
-    #[arg(long, value_name = "MODEL.json", required_unless_present_any = ["explain", "since"])]
+    #[arg(long, value_name = "MODEL.json", required_unless_present_any = ["explain", "since", "group"])]
     pub(crate) model: Option<PathBuf>,
 
     /// Compare with an earlier diagnosis of the same muscle instead: the model that its --out-model wrote. Says what has
@@ -51,7 +53,19 @@ pub(crate) struct Args {
     )]
     pub(crate) since: Option<PathBuf>,
 
-    /// Diagnosis to write (pam-diagnosis/1), or with --since what has changed (pam-change/1); - is standard output.
+    /// Diagnose several muscles of one rig together instead: a file (TOML) with a name, a model, logs and holdout for each
+    /// [[muscle]]. What the rig does to all of them is shared and adds up; what a muscle does is its own.
+    #[arg(
+        long,
+        value_name = "GROUP.toml",
+        conflicts_with_all = [
+            "explain", "model", "since", "holdout", "out_model", "report", "next_experiment", "isolability"
+        ]
+    )]
+    pub(crate) group: Option<PathBuf>,
+
+    /// Diagnosis to write (pam-diagnosis/1), with --since what has changed (pam-change/1), or with --group what muscles share
+    /// (pam-group/1); - is standard output.
     #[arg(
         long,
         value_name = "DIAGNOSIS.json",

@@ -3,6 +3,7 @@
 mod args;
 mod empirical;
 mod explain;
+mod group;
 mod own;
 mod page;
 mod provenance;

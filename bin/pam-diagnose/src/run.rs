@@ -13,7 +13,7 @@ use pam_diagnosis::traces::traces;
 use crate::args::Args;
 use crate::own::OwnEffects;
 use crate::provenance::Provenance;
-use crate::{explain, page, since, tables};
+use crate::{explain, group, page, since, tables};
 
 /// Samples of each recording that the report draws, at most.
 const REPORT_SAMPLES: usize = 20_000;
@@ -32,16 +32,20 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
         args.figure.is_none(),
         "--figure draws an effect; name it with --explain (figures of a diagnosis are in --report)"
     );
-    if let Some(baseline) = &args.since {
-        return since::since(args, &console, baseline);
-    }
-    let model_path = args.model.as_deref().context("--model is missing")?;
+    group::refuse_with_group(args)?;
     if let Some(limit) = args.matters_above_n {
         ensure!(
             limit >= 0.0 && limit.is_finite(),
             "--matters-above-n {limit} is no size of a force; give newtons from 0 up"
         );
     }
+    if let Some(path) = &args.group {
+        return group::group(args, &own, &console, path);
+    }
+    if let Some(baseline) = &args.since {
+        return since::since(args, &console, baseline);
+    }
+    let model_path = args.model.as_deref().context("--model is missing")?;
     let from_stdin = args.logs.iter().chain(&args.holdout).filter(|path| path.as_os_str() == "-").count();
     ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
     for held_out in &args.holdout {
@@ -81,6 +85,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
         model,
         config: args.config(),
         effects: own.effects.clone(),
+        rig: Vec::new(),
         accept_implausible: args.accept_implausible,
     };
     if args.run.check {

@@ -2,134 +2,38 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+mod desk;
+
 use std::sync::OnceLock;
 
 use pam_core::artifact::change::{ChangeArtifact, ChangeKind, ChangeVerdict, Compared};
-use pam_core::artifact::model::{Assumed, Loss};
-use pam_core::artifact::{Input, InputRole, Tool};
-use pam_core::force::Form;
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::{ReadOptions, read_recording};
-use pam_identification::fit::FitOptions;
-use pam_identification::identify::{Request, check};
-use pam_identification::search_space::LATEX_RATIO;
-use pam_virtual_bench::{Bench, Concealed, Options, Parameters, TrueMuscle, command};
+use pam_virtual_bench::{Concealed, Parameters};
+
+use desk::Desk;
 
 const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-change-1.json");
-const PROTOCOLS: [&str; 3] = ["minor-loops", "isobaric-triangles", "isometric-ramps"];
 const THEN: &str = "then-minor-loops.csv then-isobaric-triangles.csv then-isometric-ramps.csv";
 const NOW: &str = "now-minor-loops.csv now-isobaric-triangles.csv now-isometric-ramps.csv";
 
-fn muscle_file() -> MuscleFile {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    MuscleFile::read(&root.join("configs/muscle-nominal.toml")).unwrap()
+/// Recordings of two dates, and the model of then: `then` and `now` are concealed; later the channel `shifted` reads so much
+/// more, and parameters are `set`.
+fn dates(then: &[Concealed], now: &[Concealed], shifted: Option<(&str, f64)>, set: fn(&mut Parameters)) -> Desk {
+    let desk = Desk::empty();
+    desk.record("then", then, None, 1, |_| {});
+    desk.record("now", now, shifted, 101, set);
+    desk.identify("then", "model.json");
+    desk
 }
 
-/// A folder with recordings of the nominal muscle at two dates, and the model that a fit to the first ones finds.
-struct Desk {
-    folder: tempfile::TempDir,
+fn plain() -> &'static Desk {
+    static DESK: OnceLock<Desk> = OnceLock::new();
+    DESK.get_or_init(|| dates(&[], &[], None, |_| {}))
 }
 
-impl Desk {
-    /// `then` and `now` are concealed; later the channel `shifted` reads so much more, and parameters are `set`.
-    fn with(then: &[Concealed], now: &[Concealed], shifted: Option<(&str, f64)>, set: fn(&mut Parameters)) -> Self {
-        let desk = Self { folder: tempfile::tempdir().unwrap() };
-        desk.record("then", then, None, 1, |_| {});
-        desk.record("now", now, shifted, 101, set);
-        desk.identify();
-        desk
-    }
-
-    fn plain() -> &'static Self {
-        static DESK: OnceLock<Desk> = OnceLock::new();
-        DESK.get_or_init(|| Self::with(&[], &[], None, |_| {}))
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn record(
-        &self,
-        date: &str,
-        effects: &[Concealed],
-        shifted: Option<(&str, f64)>,
-        seed: u64,
-        set: fn(&mut Parameters),
-    ) {
-        let MuscleFile { muscle, strand_modulus_pa, .. } = muscle_file();
-        let mut parameters = Parameters::nominal();
-        set(&mut parameters);
-        let truth = TrueMuscle::new(muscle, strand_modulus_pa, parameters);
-        let options = Options { duration_scale: 0.2, ..Options::default() };
-        for (index, protocol) in PROTOCOLS.into_iter().enumerate() {
-            let bench = Bench::new(truth.clone(), command(protocol, &truth, &options).unwrap());
-            let bench = bench.with_effects(effects, 1).unwrap();
-            let mut csv = Vec::new();
-            bench.record(seed + index as u64).write_csv(&mut csv).unwrap();
-            let text = String::from_utf8(csv).unwrap();
-            let text = shifted.map_or(text.clone(), |(column, by)| more(&text, column, by));
-            std::fs::write(self.path(&format!("{date}-{protocol}.csv")), text).unwrap();
-        }
-    }
-
-    fn identify(&self) {
-        let read = |name: &str| read_recording(&self.path(name), &ReadOptions::default()).unwrap();
-        let request = Request {
-            estimation: THEN.split(' ').map(read).collect(),
-            validation: Vec::new(),
-            muscle: muscle_file(),
-            form: Form::Corrected,
-            options: FitOptions { n_particles: 30, n_iterations: 60, n_starts: 1, seed: 1, polish: true },
-            loss: Loss::Square,
-            free: Vec::new(),
-            fix: Vec::new(),
-            bladder_ratio: LATEX_RATIO,
-            length_play_m: None,
-            pressure_play_pa: None,
-            assumed: Assumed::default(),
-            accept_implausible: true,
-            unbounded: false,
-        };
-        let checked = check(request).unwrap();
-        let config = checked.config();
-        let tool = Tool { name: "pam-identify".to_owned(), version: "0.1.0".to_owned() };
-        let muscle = Input { path: "muscle.toml".to_owned(), sha256: "0".repeat(64), role: InputRole::Muscle };
-        let recordings = THEN.split(' ').map(|name| Input::recording(&read(name), InputRole::Estimation));
-        let inputs = std::iter::once(muscle).chain(recordings).collect();
-        let model = checked.identify().unwrap().artifact(tool, inputs, config, 1);
-        std::fs::write(self.path("model.json"), model.json().unwrap()).unwrap();
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_pam-diagnose"))
-            .args(arguments.split(' ').filter(|word| !word.is_empty()))
-            .current_dir(self.folder.path())
-            .stdin(Stdio::null())
-            .output()
-            .unwrap()
-    }
-
-    fn changes(&self, arguments: &str) -> ChangeArtifact {
-        let output = self.run(&format!("{arguments} --out -"));
-        assert!(output.stderr.is_empty() || output.status.code() != Some(2), "{output:?}");
-        serde_json::from_slice(&output.stdout).unwrap()
-    }
-}
-
-/// `csv` with a column that reads so much more.
-fn more(csv: &str, column: &str, by: f64) -> String {
-    let at = csv.lines().next().unwrap().split(',').position(|name| name == column).unwrap();
-    let row = |(index, line): (usize, &str)| {
-        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
-        if index > 0 {
-            fields[at] = (fields[at].parse::<f64>().unwrap() + by).to_string();
-        }
-        fields.join(",") + "\n"
-    };
-    csv.lines().enumerate().map(row).collect()
+fn changes(desk: &Desk, arguments: &str) -> ChangeArtifact {
+    let output = desk.run(&format!("{arguments} --out -"));
+    assert!(output.stderr.is_empty() || output.status.code() != Some(2), "{output:?}");
+    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 /// The only change, named without a rival.
@@ -146,7 +50,7 @@ fn is_near(compared: &Compared, truth: f64) -> bool {
 
 #[test]
 fn nothing_is_said_of_recordings_in_which_only_the_noise_is_another() {
-    let desk = Desk::plain();
+    let desk = plain();
     let output = desk.run(&format!("{NOW} --since model.json --out same.json --report same.html"));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let found: ChangeArtifact = serde_json::from_slice(&std::fs::read(desk.path("same.json")).unwrap()).unwrap();
@@ -158,7 +62,7 @@ fn nothing_is_said_of_recordings_in_which_only_the_noise_is_another() {
 
 #[test]
 fn a_zero_that_has_shifted_is_named_in_newtons_and_in_standard_errors() {
-    let desk = Desk::with(&[], &[], Some(("force_N", 5.0)), |_| {});
+    let desk = dates(&[], &[], Some(("force_N", 5.0)), |_| {});
     let output = desk.run(&format!("{NOW} --since model.json --out zero.json"));
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let found: ChangeArtifact = serde_json::from_slice(&std::fs::read(desk.path("zero.json")).unwrap()).unwrap();
@@ -175,7 +79,7 @@ fn a_bladder_that_has_got_softer_is_named_with_its_modulus_then_and_now() {
         parameters.c10_pa *= 0.8;
         parameters.c01_pa *= 0.8;
     };
-    let found = Desk::with(&[], &[], None, soften).changes(&format!("{NOW} --since model.json"));
+    let found = changes(&dates(&[], &[], None, soften), &format!("{NOW} --since model.json"));
     let (id, bladder) = only(&found);
     assert_eq!((id, bladder.unit.as_str()), ("c10 + c01", "Pa"));
     let nominal = Parameters::nominal();
@@ -188,17 +92,17 @@ fn a_bladder_that_has_got_softer_is_named_with_its_modulus_then_and_now() {
 fn an_effect_that_was_there_then_is_part_of_the_base_and_one_that_was_not_is_new() {
     let damping = Concealed::new("viscous-damping", 2.0);
     let late = [damping.clone(), Concealed::new("channel-delay", 1.5)];
-    let desk = Desk::with(&[damping], &late, None, |_| {});
+    let desk = dates(&[damping], &late, None, |_| {});
     let then = desk.run(&format!("{THEN} --model model.json --out then.json --out-model augmented.json"));
     assert_ne!(then.status.code(), Some(2), "{then:?}");
-    let found = desk.changes(&format!("{NOW} --since augmented.json --model model.json"));
+    let found = changes(&desk, &format!("{NOW} --since augmented.json --model model.json"));
     let (id, _) = only(&found);
     assert_eq!((id, found.changes[0].kind), ("channel-delay", ChangeKind::NewEffect));
 }
 
 #[test]
 fn the_same_recordings_give_the_same_changes_on_any_number_of_threads() {
-    let desk = Desk::plain();
+    let desk = plain();
     let one = desk.run(&format!("{NOW} --since model.json --out - --threads 1"));
     let two = desk.run(&format!("{NOW} --since model.json --out - --threads 2"));
     assert!(!one.stdout.is_empty() && one.stdout == two.stdout);
@@ -206,7 +110,7 @@ fn the_same_recordings_give_the_same_changes_on_any_number_of_threads() {
 
 #[test]
 fn a_baseline_of_another_muscle_is_refused_and_leaves_no_file() {
-    let desk = Desk::plain();
+    let desk = plain();
     let mut other: serde_json::Value =
         serde_json::from_slice(&std::fs::read(desk.path("model.json")).unwrap()).unwrap();
     other["inputs"][0]["sha256"] = "1".repeat(64).into();
@@ -228,7 +132,7 @@ fn a_baseline_of_another_muscle_is_refused_and_leaves_no_file() {
 
 #[test]
 fn recordings_that_the_baseline_was_made_from_are_no_later_ones() {
-    let desk = Desk::plain();
+    let desk = plain();
     let output = desk.run(&format!("{THEN} --since model.json --out twice.json"));
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{message}");
@@ -238,7 +142,7 @@ fn recordings_that_the_baseline_was_made_from_are_no_later_ones() {
 
 #[test]
 fn a_diagnosis_in_the_place_of_its_model_is_refused_with_the_remedy() {
-    let desk = Desk::plain();
+    let desk = plain();
     std::fs::write(desk.path("diagnosis.json"), "{\"schema\": \"pam-diagnosis/1\"}").unwrap();
     let output = desk.run(&format!("{NOW} --since diagnosis.json --out no.json"));
     let message = String::from_utf8(output.stderr).unwrap();
@@ -250,10 +154,10 @@ fn a_diagnosis_in_the_place_of_its_model_is_refused_with_the_remedy() {
 
 #[test]
 fn the_schema_is_published_and_obeyed() {
-    let desk = Desk::plain();
+    let desk = plain();
     let output = desk.run("--schema=since");
     assert!(output.stdout == SCHEMA.as_bytes(), "the published schema is stale; run scripts/schemas");
-    let artifact = serde_json::to_value(desk.changes(&format!("{NOW} --since model.json"))).unwrap();
+    let artifact = serde_json::to_value(changes(desk, &format!("{NOW} --since model.json"))).unwrap();
     jsonschema::validate(&serde_json::from_str(SCHEMA).unwrap(), &artifact).unwrap();
     assert_eq!(artifact["schema"], "pam-change/1");
 }

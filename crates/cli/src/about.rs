@@ -4,7 +4,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use schemars::JsonSchema;
 
-use pam_core::artifact::ChangeArtifact;
+use pam_core::artifact::{ChangeArtifact, GroupArtifact};
 use pam_core::recording::ChannelsFile;
 
 use crate::message::Message;
@@ -14,6 +14,8 @@ const CHANNELS: &str = "channels";
 
 /// Option, and kind of schema, of what has changed since an earlier diagnosis.
 const SINCE: &str = "since";
+/// Option, and kind of schema, of what the muscles of one rig share.
+const GROUP: &str = "group";
 
 /// Gives the text of a JSON schema.
 pub(crate) type Schema = fn() -> String;
@@ -26,8 +28,9 @@ pub(crate) fn schema<T: JsonSchema>() -> String {
 /// `command` with the options below; `has_artifact` where the program writes an artifact that has a schema.
 pub(crate) fn with_options(command: Command, has_artifact: bool) -> Command {
     let reads = command.get_arguments().any(|argument| argument.get_id() == CHANNELS);
-    let compares = command.get_arguments().any(|argument| argument.get_id() == SINCE);
-    let kinds = [("artifact", has_artifact), ("messages", true), (CHANNELS, reads), (SINCE, compares)];
+    let has = |id: &str| command.get_arguments().any(|argument| argument.get_id() == id);
+    let kinds =
+        [("artifact", has_artifact), ("messages", true), (CHANNELS, reads), (SINCE, has(SINCE)), (GROUP, has(GROUP))];
     let of: Vec<&str> = kinds.into_iter().filter(|(_, known)| *known).map(|(kind, _)| kind).collect();
     let help = match (has_artifact, reads) {
         (true, true) => {
@@ -75,6 +78,7 @@ pub(crate) fn asked_for(
         let schema = match of.as_str() {
             CHANNELS => schema::<ChannelsFile>,
             SINCE => schema::<ChangeArtifact>,
+            GROUP => schema::<GroupArtifact>,
             "artifact" => artifact.unwrap_or(schema::<Message>),
             _ => schema::<Message>,
         };

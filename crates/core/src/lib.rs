@@ -8,6 +8,7 @@ pub mod artifact;
 pub mod direction;
 pub mod effects;
 pub mod force;
+pub mod group;
 mod knees;
 pub mod motion;
 pub mod muscle;

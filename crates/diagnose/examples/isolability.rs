@@ -22,6 +22,7 @@ fn main() {
         model,
         config,
         effects: Vec::new(),
+        rig: Vec::new(),
         accept_implausible: false,
     })
     .unwrap();

@@ -6,7 +6,7 @@ use pam_core::artifact::diagnosis::{
 };
 use pam_core::artifact::model::EffectEntry;
 use pam_core::direction::Thresholds;
-use pam_core::effects::{AugmentedModel, Effect};
+use pam_core::effects::{AugmentedModel, Effect, Term};
 use pam_core::force::ForceModel;
 use pam_core::recording::Recording;
 use pam_identification::evaluate::{evaluate, evaluate_augmented, noise_floor_n};
@@ -26,6 +26,7 @@ use crate::own;
 use crate::places::{regions, structured, telling};
 use crate::plausible::implausible;
 use crate::problem::{DiagnosisProblem, SearchOutcome};
+use crate::rig;
 use crate::search::Limits;
 use crate::short;
 use crate::stand_ins;
@@ -47,6 +48,8 @@ pub struct Request {
     pub config: DiagnoseConfig,
     /// Effects of a user's own, considered beside those of the catalogue.
     pub effects: Vec<&'static dyn Effect>,
+    /// Effects of the rig that are known from elsewhere: they are in, and not looked for again.
+    pub rig: Vec<Term>,
     /// Go on where an instrument fault is suspected.
     pub accept_implausible: bool,
 }
@@ -119,9 +122,9 @@ pub const MAX_EFFECTS: usize = 4;
 /// # Errors
 /// [`DiagnoseError`] names the recording and the remedy.
 pub fn check(request: Request) -> Result<(), DiagnoseError> {
-    let Request { estimation, holdout, model, config, effects, accept_implausible } = request;
+    let Request { estimation, holdout, model, config, effects, rig, accept_implausible } = request;
     let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
-    let track = Track::of(&estimation, model.direction, &model.force_model())?;
+    let track = rig::track(&estimation, &model, &rig)?;
     check::long_enough(&track, &estimation)?;
     let limits = limits(&config, effects, &model, &estimation, false)?;
     given(&DiagnosisProblem::new(&estimation, &model, limits), &holdout, accept_implausible).map(|_| ())
@@ -141,7 +144,7 @@ fn given(
 }
 
 /// The floor is that of the sensors that made `estimation`, which need not be those that the model was identified with.
-fn limits(
+pub(crate) fn limits(
     config: &DiagnoseConfig,
     own: Vec<&'static dyn Effect>,
     model: &ModelArtifact,
@@ -171,9 +174,9 @@ pub fn diagnose(request: Request) -> Result<Diagnosis, DiagnoseError> {
 /// # Errors
 /// As [`diagnose`].
 pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Result<Diagnosis, DiagnoseError> {
-    let Request { estimation, holdout, mut model, config, effects: own, accept_implausible } = request;
+    let Request { estimation, holdout, mut model, config, effects: own, rig, accept_implausible } = request;
     let (estimation, holdout) = check::prepare(estimation, holdout, &model, accept_implausible)?;
-    let track = Track::of(&estimation, model.direction, &model.force_model())?;
+    let track = rig::track(&estimation, &model, &rig)?;
     check::long_enough(&track, &estimation)?;
     let limits = limits(&config, own, &model, &estimation, !holdout.is_empty())?;
     let mut given = given(&DiagnosisProblem::new(&estimation, &model, limits.clone()), &holdout, accept_implausible)?;
@@ -184,12 +187,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         observer(done.get(), steps);
     };
     observer(done.get(), steps);
-    let mut recordings = Recordings { estimation, holdout };
+    let mut recordings = Recordings { estimation, holdout, rig };
     let outcome = recordings.under_best_law(&mut model, &limits, track, &advance)?;
-    let Recordings { mut estimation, mut holdout } = recordings;
+    let Recordings { mut estimation, mut holdout, rig } = recordings;
     let question = DiagnosisProblem::new(&estimation, &model, limits);
     let SearchOutcome { track, mut found, knocks, mut sizes } = outcome;
-    let held = (!holdout.is_empty()).then(|| Track::of(&holdout, model.direction, &model.force_model())).transpose()?;
+    let held = (!holdout.is_empty()).then(|| rig::track(&holdout, &model, &rig)).transpose()?;
     if let Some(held) = held.as_ref().filter(|_| knocks.is_none()) {
         found = veto::confirmed(&question, &track, found, held)?;
         sizes = Sizes::of(&found, &question.limits);
@@ -209,7 +212,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     if !too_short.is_empty() && knocks.is_none() {
         sizes = Sizes::of(&found, &question.limits);
     }
-    given.beside_effects(&question, &track, &found);
+    given.beside_effects(&question, &track, &found, !rig.is_empty());
     let space = &question.space;
     observer(steps - 1, steps);
     let verdict = verdict(&found, &sizes, knocks.is_some());
@@ -262,7 +265,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
-    let augmented = AugmentedModel::new(state.model.clone(), terms);
+    entries.splice(0..0, rig.iter().map(rig::entry));
+    let augmented = AugmentedModel::new(state.model.clone(), rig.into_iter().chain(terms).collect());
     for prepared in estimation.iter_mut().chain(&mut holdout) {
         prepared.begin(augmented.base(), model.direction.standstill)?;
     }
@@ -302,6 +306,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
 struct Recordings {
     estimation: Vec<Prepared>,
     holdout: Vec<Prepared>,
+    /// Effects of the rig that are known.
+    rig: Vec<Term>,
 }
 
 impl Recordings {
@@ -326,7 +332,7 @@ impl Recordings {
             let Some(standstill) = laws::better(&problem, &best.track, &best.found, model.direction)? else { break };
             let (before, before_n) = (model.direction, self.held_n(&best, model.direction)?);
             self.redirect(model, Thresholds { standstill, ..before })?;
-            let track = Track::of(&self.estimation, model.direction, &model.force_model())?;
+            let track = rig::track(&self.estimation, model, &self.rig)?;
             let other = DiagnosisProblem::new(&self.estimation, model, limits.clone()).answer(track, advance)?;
             let left = |outcome: &SearchOutcome| outcome.found.best.held_out.mean_square();
             // What judges names judges laws as well.
@@ -342,7 +348,8 @@ impl Recordings {
     /// What is left of the hold-outs, root mean square over all samples, in N; nothing where nothing was held out.
     fn held_n(&self, outcome: &SearchOutcome, direction: Thresholds) -> Result<f64, DiagnoseError> {
         let state = &outcome.found.best.state;
-        let augmented = AugmentedModel::new(state.model.clone(), state.terms()).without_events();
+        let terms = self.rig.iter().cloned().chain(state.terms()).collect();
+        let augmented = AugmentedModel::new(state.model.clone(), terms).without_events();
         let together = evaluate_augmented(&self.holdout, &augmented, direction)?.together;
         Ok(together.map_or(0.0, |together| together.rmse_all_n))
     }

@@ -5,13 +5,16 @@
 //! to either side, and its size with pressure, with contraction and with the direction of friction.
 
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::Kind;
 use pam_core::effects::static_map::legendre;
+use pam_core::effects::{AugmentedModel, Base, Effect, Kind, Moment, Term};
+use pam_core::force::ForceModel;
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::CandidateEffect;
 use crate::nuisance::{Nuisance, over_range};
 use crate::state::{Setting, State};
+use crate::track::Track;
+use crate::veto::force_n as modelled_n;
 
 /// By how much a shape bends to either side.
 const FACTORS: [f64; 2] = [0.5, 2.0];
@@ -44,44 +47,120 @@ fn forms_n(setting: &Setting<'_>, state: &State, coordinates: &Coordinates, plac
     without.remove(place);
     let n_before: usize = state.guesses[..place].iter().map(|guess| guess.amplitudes().len()).sum();
     let rest_n = partial_n(setting, state, &without, n_before, guess.amplitudes().len());
-    let own_n: Vec<f64> = whole_n.iter().zip(&rest_n).map(|(whole, rest)| whole - rest).collect();
-    let mut forms = Vec::new();
-    for (parameter, shape) in guess.effect.shape().iter().enumerate() {
-        for factor in FACTORS {
-            let mut guesses = state.guesses.clone();
-            let value = guess.shape[parameter];
-            let bent = if value == 0.0 { continue } else { factor * value };
-            guesses[place].shape[parameter] = bent.clamp(shape.range.0, shape.range.1);
-            let bent_n = force_n(setting, state, &guesses);
-            forms.push(bent_n.iter().zip(&whole_n).map(|(bent, whole)| bent - whole).collect());
+    let bent_n = |shape: &[f64]| {
+        let mut guesses = state.guesses.clone();
+        guesses[place].shape = shape.to_vec();
+        force_n(setting, state, &guesses)
+    };
+    let friction = setting.track.instants.iter().zip(&state.sheet.base);
+    Bending {
+        track: setting.track,
+        coordinates,
+        effect: guess.effect,
+        shape: &guess.shape,
+        own_n: whole_n.iter().zip(&rest_n).map(|(whole, rest)| whole - rest).collect(),
+        whole_n,
+        friction_n: friction.map(|(instant, base)| instant.moment.direction * base.normal_n).collect(),
+    }
+    .forms_n(&bent_n)
+}
+
+/// Other forms of `terms`, which are known and whose sizes no fit moves, beside `base`, in N at every instant of `track`: the size
+/// of each as well, and a shape that is zero to either side of it.
+pub(crate) fn of_known_n(track: &Track, base: &ForceModel, terms: &[Term]) -> Vec<Vec<f64>> {
+    let coordinates = Coordinates::of(track);
+    let with_n = |terms: Vec<Term>| modelled_n(track, &AugmentedModel::new(base.clone(), terms));
+    let whole_n = with_n(terms.to_vec());
+    let friction = track.instants.iter().map(|instant| {
+        let Moment { pressure_pa, length_m, direction, .. } = instant.moment;
+        direction * Base::of(base, pressure_pa, length_m).normal_n
+    });
+    let friction_n: Vec<f64> = friction.collect();
+    let mut columns = Vec::new();
+    for (place, term) in terms.iter().enumerate() {
+        let mut others = terms.to_vec();
+        others.remove(place);
+        let own_n: Vec<f64> = whole_n.iter().zip(with_n(others)).map(|(whole, rest)| whole - rest).collect();
+        let bent_n = |shape: &[f64]| {
+            let mut bent = terms.to_vec();
+            bent[place].shape = shape.to_vec();
+            with_n(bent)
+        };
+        let bending = Bending {
+            track,
+            coordinates: &coordinates,
+            effect: term.effect,
+            shape: &term.shape,
+            own_n: own_n.clone(),
+            whole_n: whole_n.clone(),
+            friction_n: friction_n.clone(),
+        };
+        columns.push(own_n);
+        columns.extend(bending.beside_zero_n(&bent_n));
+        columns.extend(bending.forms_n(&bent_n));
+    }
+    columns
+}
+
+/// An effect that bends.
+struct Bending<'a> {
+    track: &'a Track,
+    coordinates: &'a Coordinates,
+    effect: &'static dyn Effect,
+    shape: &'a [f64],
+    /// Force with it, in N at every instant.
+    whole_n: Vec<f64>,
+    /// What it adds to that, in N.
+    own_n: Vec<f64>,
+    /// Friction of a unit coefficient with its sign, in N.
+    friction_n: Vec<f64>,
+}
+
+impl Bending<'_> {
+    /// Its other forms; `bent_n` is the whole force with another shape.
+    fn forms_n(&self, bent_n: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
+        let mut forms = Vec::new();
+        for (parameter, &value) in self.shape.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+            forms.extend(FACTORS.map(|factor| self.bent_n(parameter, factor * value, bent_n)));
         }
-    }
-    let track = setting.track;
-    for kind in [Coordinate::Pressure, Coordinate::Contraction] {
-        let over = over_range(coordinates.of_kind(kind), &track.counted);
-        forms.push(own_n.iter().zip(&over).map(|(own, over)| own * over).collect());
-    }
-    forms.push(own_n.iter().zip(&track.instants).map(|(own, instant)| own * instant.moment.direction).collect());
-    let own = guess.effect.page().coordinate;
-    if !matches!(own, Coordinate::Time | Coordinate::Cycle) {
-        let over = over_quantiles(coordinates.of_kind(own), &track.counted);
-        for degree in 1..=LIVES {
-            forms.push(own_n.iter().zip(&over).map(|(own, over)| own * legendre(degree, *over)).collect());
-            forms.push(
-                friction_n(setting, state).zip(&over).map(|(sign, over)| sign * legendre(degree, *over)).collect(),
-            );
+        let (track, own_n) = (self.track, &self.own_n);
+        for kind in [Coordinate::Pressure, Coordinate::Contraction] {
+            let over = over_range(self.coordinates.of_kind(kind), &track.counted);
+            forms.push(own_n.iter().zip(&over).map(|(own, over)| own * over).collect());
         }
+        forms.push(own_n.iter().zip(&track.instants).map(|(own, instant)| own * instant.moment.direction).collect());
+        let own = self.effect.page().coordinate;
+        if !matches!(own, Coordinate::Time | Coordinate::Cycle) {
+            let over = over_quantiles(self.coordinates.of_kind(own), &track.counted);
+            for degree in 1..=LIVES {
+                for force_n in [own_n, &self.friction_n] {
+                    forms
+                        .push(force_n.iter().zip(&over).map(|(force, over)| force * legendre(degree, *over)).collect());
+                }
+            }
+        }
+        forms
     }
-    forms
+
+    /// The same to either side of every shape that is zero, as far as the smallest that a grid has.
+    fn beside_zero_n(&self, bent_n: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
+        let zeros = self.shape.iter().zip(self.effect.shape()).enumerate().filter(|(_, (value, _))| **value == 0.0);
+        let smallest = |grid: &[f64]| grid.iter().copied().filter(|&value| value > 0.0).reduce(f64::min);
+        let sides = zeros.filter_map(|(parameter, (_, shape))| Some((parameter, smallest(shape.grid)?)));
+        sides.flat_map(|(parameter, side)| [-side, side].map(|side| self.bent_n(parameter, side, bent_n))).collect()
+    }
+
+    /// What changes with another value of shape `parameter`, in N.
+    fn bent_n(&self, parameter: usize, value: f64, bent_n: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+        let (low, high) = self.effect.shape()[parameter].range;
+        let mut shape = self.shape.to_vec();
+        shape[parameter] = value.clamp(low, high);
+        bent_n(&shape).iter().zip(&self.whole_n).map(|(bent, whole)| bent - whole).collect()
+    }
 }
 
 /// Highest degree of what is left in the coordinate that an effect lives in.
 const LIVES: usize = 3;
-
-/// Friction of a unit coefficient with its sign, at every instant.
-fn friction_n<'a>(setting: &'a Setting<'_>, state: &'a State) -> impl Iterator<Item = f64> + 'a {
-    setting.track.instants.iter().zip(&state.sheet.base).map(|(instant, base)| instant.moment.direction * base.normal_n)
-}
 
 /// Ranks of `values` among those that count, from -1 to 1: what is seldom reached is no lever.
 fn over_quantiles(values: &[f64], counted: &[bool]) -> Vec<f64> {

@@ -104,9 +104,16 @@ impl Given {
 
     /// Takes back that the model misses the recordings where it follows them with the effects that were found beside it, its
     /// own parameters held, nearly as well as with parameters that are free.
-    pub(crate) fn beside_effects(&mut self, question: &DiagnosisProblem<'_>, track: &Track, found: &Found) {
+    /// `knows_rig` says whether `track` is without effects of the rig that are known.
+    pub(crate) fn beside_effects(
+        &mut self,
+        question: &DiagnosisProblem<'_>,
+        track: &Track,
+        found: &Found,
+        knows_rig: bool,
+    ) {
         let state = &found.best.state;
-        if !self.misses || state.guesses.is_empty() {
+        if !self.misses || state.guesses.is_empty() && !knows_rig {
             return;
         }
         let given = question.model.force_model();

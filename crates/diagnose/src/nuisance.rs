@@ -133,7 +133,7 @@ impl Nuisance {
         self.with(Group::Beginning, columns, counted, LOOSE)
     }
 
-    /// Tare of every recording; `floor_n` is what the sensors leave.
+    /// Tare of every recording, and other forms of effects that are known; `floor_n` is what the sensors leave.
     pub fn of_recordings(track: &Track, floor_n: f64) -> Self {
         let n = track.n();
         let variance = CORRELATED * floor_n * floor_n;
@@ -145,6 +145,9 @@ impl Nuisance {
                 column
             });
             out = out.with(Group::Tare, tares.collect(), &track.counted, variance / (TARE_N * TARE_N));
+        }
+        if !track.known_forms_n.is_empty() {
+            out = out.with_forms(track.known_forms_n.clone(), &track.counted);
         }
         out
     }

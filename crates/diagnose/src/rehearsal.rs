@@ -44,6 +44,7 @@ impl Rehearsal {
                 fold_of_block: Vec::new(),
                 counted: Vec::new(),
                 sampled: Vec::new(),
+                known_forms_n: Vec::new(),
             },
             stands_for_s: Vec::new(),
         };

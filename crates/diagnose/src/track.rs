@@ -46,6 +46,8 @@ pub struct Track {
     pub counted: Vec<bool>,
     /// Those of them that a search for the best shape looks at.
     pub sampled: Vec<bool>,
+    /// Other forms of effects that are known and taken off, in N at every instant.
+    pub known_forms_n: Vec<Vec<f64>>,
 }
 
 impl Track {
@@ -87,6 +89,7 @@ impl Track {
             fold_of_block: Vec::new(),
             counted: Vec::new(),
             sampled: Vec::new(),
+            known_forms_n: Vec::new(),
         };
         // What was recorded decides which blocks go together, not the order or the names of the files.
         let mut by_content: Vec<usize> = (0..recordings.len()).collect();

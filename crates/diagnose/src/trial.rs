@@ -138,19 +138,15 @@ pub fn among(
                 return Some(Trial { guess, mean_square, held_out: before.clone(), log_ratio: 0.0 });
             }
             let (held_out, is_pressed) = weigh(setting, state, &guess)?;
-            let looked_for = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
-            let strained = if is_pressed { PRESSED_CHARGE } else { 1.0 };
-            let degenerate = if is_degenerate(guess.effect, &guess.shape) { DEGENERATE_CHARGE } else { 1.0 };
             let beginnings = if guess.carried { setting.track.recordings.len() } else { 0 };
-            let n_parameters = guess.effect.shape().len() + guess.amplitudes().len() + beginnings;
-            let freedom = 1.0 - FREEDOM_CHARGE * n_parameters.saturating_sub(1) as f64;
+            let kept = share_kept(&guess, is_pressed, beginnings);
             let mut evidence = before.log_ratio(&held_out);
             if guess.carried {
                 // What only the beginnings gain says that recordings differ, not by what.
                 let begun = setting.weigh_beginnings(state, &guess)?;
                 evidence = evidence.min(begun.log_ratio(&held_out));
             }
-            let log_ratio = looked_for * strained * degenerate * freedom * evidence;
+            let log_ratio = kept * evidence;
             Some(Trial { guess, mean_square, held_out, log_ratio })
         })
         .collect();
@@ -164,9 +160,20 @@ pub fn among(
     trials
 }
 
+/// Share of its evidence that `guess` keeps for what it is and how freely it was found; `is_pressed` where an amplitude presses
+/// against the largest that physics has for it, `beginnings` memories of what went before were fitted beside it.
+pub(crate) fn share_kept(guess: &CandidateEffect, is_pressed: bool, beginnings: usize) -> f64 {
+    let looked_for = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
+    let strained = if is_pressed { PRESSED_CHARGE } else { 1.0 };
+    let degenerate = if is_degenerate(guess.effect, &guess.shape) { DEGENERATE_CHARGE } else { 1.0 };
+    let n_parameters = guess.effect.shape().len() + guess.amplitudes().len() + beginnings;
+    let freedom = 1.0 - FREEDOM_CHARGE * n_parameters.saturating_sub(1) as f64;
+    looked_for * strained * degenerate * freedom
+}
+
 /// Mean squares over held-out blocks of `state` with one more guess, and whether an amplitude of that presses against the
 /// largest that physics has for it: the data want something else of that shape.
-fn weigh(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> Option<(HeldOut, bool)> {
+pub(crate) fn weigh(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> Option<(HeldOut, bool)> {
     if !guess.only_adds() {
         return Some((setting.hold_out(&with(setting, state, guess)?)?, false));
     }
@@ -237,7 +244,7 @@ pub fn refine(
 }
 
 /// Half the distance to the neighbors of `value` on the grid.
-fn step_around(grid: &[f64], range: (f64, f64), value: f64) -> f64 {
+pub(crate) fn step_around(grid: &[f64], range: (f64, f64), value: f64) -> f64 {
     let below = grid.iter().copied().filter(|&point| point < value).fold(f64::NAN, f64::max);
     let above = grid.iter().copied().filter(|&point| point > value).fold(f64::NAN, f64::min);
     let distance = match (below.is_finite(), above.is_finite()) {

@@ -39,9 +39,9 @@ const LEAST_LEFT: f64 = 0.08;
 /// The same beyond which what explains the rest is no explanation: twice as much is left.
 const MOST: f64 = 2.0 / 3.0;
 /// The same for an effect that the catalogue says it is confused with.
-const DECLARED_RIVAL: f64 = 0.6;
+pub(crate) const DECLARED_RIVAL: f64 = 0.6;
 /// A rival that reaches this share of the evidence cannot be told from what was named.
-const RIVAL: f64 = 0.85;
+pub(crate) const RIVAL: f64 = 0.85;
 
 impl Sizes {
     /// Of a search under its limits.

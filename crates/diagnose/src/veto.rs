@@ -7,6 +7,7 @@
 //! next best is looked for.
 
 use pam_core::effects::{AugmentedModel, Effect, Kind, Moment};
+use pam_core::force::ForceModel;
 use pam_core::shift::shifted;
 
 use crate::coordinates::Coordinates;
@@ -76,17 +77,14 @@ fn without_denied(
 ) -> (Found, Option<&'static str>) {
     let nuisance = found.nuisance.clone();
     let setting = question.setting(track, &nuisance);
-    let coordinates = Coordinates::of(heldout);
-    let beside = Nuisance::of_recordings(heldout, question.limits.sensor_floor_n)
-        .with_reversals(heldout, &coordinates, &found.best.state.model)
-        .with_map(heldout, &coordinates);
+    let beside = beside(question, heldout, &found.best.state.model);
     let held = question.setting(heldout, &beside);
     let mut strongest_denied = None;
     loop {
         let shares = shares(&held, &found);
         let Some(Denied { index, too_large, .. }) = denied(&found, &shares) else {
             for (taken, share) in found.taken.iter_mut().zip(&shares) {
-                taken.is_confirmed = share.is_some_and(|share| share.least() > SEEN);
+                taken.is_confirmed = share.is_some_and(Share::shows);
             }
             return (found, strongest_denied);
         };
@@ -103,6 +101,25 @@ fn without_denied(
             found.stand_ins.push(id);
         }
     }
+}
+
+/// What anything is judged beside on `heldout`.
+fn beside(question: &DiagnosisProblem<'_>, heldout: &Track, model: &ForceModel) -> Nuisance {
+    let coordinates = Coordinates::of(heldout);
+    Nuisance::of_recordings(heldout, question.limits.sensor_floor_n)
+        .with_reversals(heldout, &coordinates, model)
+        .with_map(heldout, &coordinates)
+}
+
+/// With how much of its size effect `index` of `state` is there on `heldout`; none where nothing can be said.
+pub(crate) fn held_share(
+    question: &DiagnosisProblem<'_>,
+    heldout: &Track,
+    state: &State,
+    index: usize,
+) -> Option<Share> {
+    let beside = beside(question, heldout, &state.model);
+    is_judged(state.guesses[index].effect).then(|| share(&question.setting(heldout, &beside), state, index)).flatten()
 }
 
 /// An effect that what was held out denies.
@@ -124,7 +141,7 @@ fn evidence(found: &Found, index: usize) -> f64 {
 /// is. What outlasts a recording is asked for nothing there: its beginnings are unknown.
 fn strongest(found: &Found, shares: &[Option<Share>]) -> Option<usize> {
     let is_there = |index: &usize| match shares[*index] {
-        Some(share) => share.least() > SEEN,
+        Some(share) => share.shows(),
         None => found.best.state.guesses[*index].effect.outlasts(),
     };
     let among = |takes: &dyn Fn(&usize) -> bool| {
@@ -145,10 +162,8 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
         }
         // What acts in a part of the range alone may not have been there.
         let stands = strongest == Some(index) || guess.effect.is_static();
-        // What is permanent may have come to its end before: only the opposite denies it.
-        let least_seen = if guess.effect.is_permanent() { 0.0 } else { SEEN };
-        let too_large = !guess.effect.outlasts() && share.is_some_and(|share| share.least() > MOST_SEEN);
-        let is_denied = too_large || share.is_some_and(|share| share.most() < least_seen);
+        let too_large = share.is_some_and(|share| share.is_too_large(guess.effect));
+        let is_denied = share.is_some_and(|share| share.denies(guess.effect));
         let tells = share.is_some_and(|share| share.error < TELLS);
         let stands = stands || !tells && !guess.effect.outlasts() && evidence(found, index) > STANDS_ALONE;
         let is_unseen = !stands && share.is_none_or(|share| share.least() <= 0.0);
@@ -181,14 +196,38 @@ fn is_judged(effect: &dyn Effect) -> bool {
 }
 
 /// Share of its size with which an effect is there.
-#[derive(Debug, Clone, Copy)]
-struct Share {
-    value: f64,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Share {
+    pub(crate) value: f64,
     /// Standard error.
-    error: f64,
+    pub(crate) error: f64,
 }
 
 impl Share {
+    /// What `shares` of different recordings say together; none where there are none.
+    pub(crate) fn pooled(shares: &[Self]) -> Option<Self> {
+        let weight: f64 = shares.iter().map(|share| share.error.powi(-2)).sum();
+        let value = shares.iter().map(|share| share.value * share.error.powi(-2)).sum::<f64>() / weight;
+        (weight > 0.0 && value.is_finite()).then(|| Self { value, error: weight.sqrt().recip() })
+    }
+
+    /// Whether it surely shows the effect.
+    pub(crate) fn shows(self) -> bool {
+        self.least() > SEEN
+    }
+
+    /// Whether it surely speaks against `effect`: it is not there, or something larger is.
+    pub(crate) fn denies(self, effect: &dyn Effect) -> bool {
+        // What is permanent may have come to its end before: only the opposite denies it.
+        let least_seen = if effect.is_permanent() { 0.0 } else { SEEN };
+        self.is_too_large(effect) || self.most() < least_seen
+    }
+
+    /// Whether something is surely there, but more than `effect`.
+    fn is_too_large(self, effect: &dyn Effect) -> bool {
+        !effect.outlasts() && self.least() > MOST_SEEN
+    }
+
     fn most(self) -> f64 {
         self.value + SURELY * self.error
     }

@@ -8,18 +8,18 @@ use crate::nuisance::Nuisance;
 use crate::state::Setting;
 
 /// What a hypothesis is judged beside.
-pub(super) struct Beside {
+pub(crate) struct Beside {
     /// Nuisances of the recordings alone, and what named effects remember of what went before them.
-    pub(super) plain: Nuisance,
+    pub(crate) plain: Nuisance,
     /// A smooth static map as well.
-    pub(super) smooth: Nuisance,
+    pub(crate) smooth: Nuisance,
     /// A static map that bends instead.
-    pub(super) free: Nuisance,
+    pub(crate) free: Nuisance,
 }
 
 impl Beside {
     /// For `best`; `of_recordings` is what is in by any means.
-    pub(super) fn of(
+    pub(crate) fn of(
         setting: &Setting<'_>,
         of_recordings: &Nuisance,
         coordinates: &Coordinates,

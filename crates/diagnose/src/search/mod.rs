@@ -20,8 +20,8 @@ use crate::state::{Setting, State};
 use crate::structure::{Feature, ProjectedResidual, Structure, features, telling_force_n};
 use crate::trial::{Shapes, Trial};
 
-pub(crate) use beside::fitting;
-use beside::{Beside, kept_map};
+use beside::kept_map;
+pub(crate) use beside::{Beside, fitting};
 use look::{FORM_AT_MOST, Look, Tried, form_square, is_strained, promise};
 use settle::{at_rest, polished, second_look, settle, without};
 pub use worth::chance;

@@ -1,0 +1,253 @@
+//! The value of an effect of the rig that all muscles share: where their evidence together is largest.
+
+use pam_core::effects::{Effect, Seen, Shape};
+use rayon::prelude::*;
+
+use super::member::{Estimate, Member, Worth};
+use crate::hypothesis::CandidateEffect;
+use crate::trial::step_around;
+
+/// Rounds in which shapes are refined, at half the distance each time.
+const ROUNDS: usize = 6;
+/// Steps to one side in a round, at most.
+const MOST_STEPS: usize = 4;
+/// The same on all instants, and the first step there as a share of the distance on the grid.
+const POLISH_ROUNDS: usize = 4;
+/// See [`POLISH_ROUNDS`].
+const POLISH: f64 = 0.25;
+/// Log predictive ratio that a value of its own must gain in a muscle before it is said to differ.
+const OWN_VALUE: f64 = 3.0;
+/// Standard errors by which an amplitude of its own must differ, and by which share of the shared one at least.
+const APART: (f64, f64) = (4.0, 0.3);
+
+/// An effect of the rig with one shape for all.
+#[derive(Debug, Clone)]
+pub(super) struct Shared {
+    pub(super) guess: CandidateEffect,
+    /// What it is worth in each muscle.
+    pub(super) each: Vec<Worth>,
+}
+
+impl Shared {
+    /// Log predictive ratio of all muscles together.
+    pub(super) fn log_ratio(&self) -> f64 {
+        self.each.iter().map(|worth| worth.log_ratio).sum()
+    }
+}
+
+/// `effect` with the shape that gains most in `members` together; none where some of them determine no fit with it.
+pub(super) fn best(members: &[&Member<'_>], effect: &'static dyn Effect) -> Option<Shared> {
+    let seen = members.iter().map(|member| member.seen).reduce(wider)?;
+    let guesses: Vec<CandidateEffect> = effect
+        .first_shapes(&seen)
+        .into_iter()
+        .flat_map(|shape| {
+            let guess = move |&sign| CandidateEffect { effect, shape: shape.clone(), sign, carried: false };
+            CandidateEffect::signs(effect).iter().map(guess)
+        })
+        .collect();
+    let tried = guesses.into_par_iter().filter_map(|guess| Some((together(members, &guess)?, guess)));
+    let (gained, guess) = tried.max_by(|left, right| left.0.total_cmp(&right.0))?;
+    let guess = refined(members, guess, gained);
+    let each = members.par_iter().map(|member| member.worth(&guess, false)).collect::<Option<Vec<_>>>()?;
+    Some(Shared { guess, each })
+}
+
+/// What `guess` gains in all `members`, on the instants that a search for a shape looks at.
+fn together(members: &[&Member<'_>], guess: &CandidateEffect) -> Option<f64> {
+    members.par_iter().map(|member| Some(member.worth(guess, true)?.log_ratio)).sum()
+}
+
+/// `guess`, which gains `gained`, with better values of its shapes.
+fn refined(members: &[&Member<'_>], guess: CandidateEffect, gained: f64) -> CandidateEffect {
+    descended(guess, gained, 1.0, ROUNDS, &|guess| together(members, guess))
+}
+
+/// The same on all instants, from near by: `guess` is good on those that a search for a shape looks at.
+pub(super) fn polished(members: &[&Member<'_>], guess: CandidateEffect) -> CandidateEffect {
+    let gains =
+        |guess: &CandidateEffect| members.par_iter().map(|member| Some(member.worth(guess, false)?.log_ratio)).sum();
+    let Some(gained) = gains(&guess) else { return guess };
+    descended(guess, gained, POLISH, POLISH_ROUNDS, &gains)
+}
+
+/// `guess`, which gains `gained`, with shapes that gain most by `gains`: steps to all sides, one shape or two at a time, since
+/// one of two delays makes up for the other. The first are `share` of the distance on the grid, half as long in every round.
+fn descended(
+    guess: CandidateEffect,
+    gained: f64,
+    share: f64,
+    rounds: usize,
+    gains: &dyn Fn(&CandidateEffect) -> Option<f64>,
+) -> CandidateEffect {
+    let shapes = guess.effect.shape();
+    let step = |(parameter, &value): (&Shape, &f64)| share * step_around(parameter.grid, parameter.range, value);
+    let mut steps: Vec<f64> = shapes.iter().zip(&guess.shape).map(step).collect();
+    let sides = sides(shapes.len());
+    let mut best = (gained, guess);
+    for _ in 0..rounds {
+        for side in &sides {
+            for _ in 0..MOST_STEPS {
+                let mut tried = best.1.clone();
+                for (index, parameter) in shapes.iter().enumerate() {
+                    let (low, high) = parameter.range;
+                    tried.shape[index] = (tried.shape[index] + side[index] * steps[index]).clamp(low, high);
+                }
+                if tried.shape == best.1.shape {
+                    break;
+                }
+                match gains(&tried).filter(|gained| *gained > best.0) {
+                    Some(gained) => best = (gained, tried),
+                    None => break,
+                }
+            }
+        }
+        steps.iter_mut().for_each(|step| *step *= 0.5);
+    }
+    best.1
+}
+
+/// Ways to step among `n` shapes: along each, and along every two of them.
+fn sides(n: usize) -> Vec<Vec<f64>> {
+    let along = |moved: &[(usize, f64)]| {
+        let mut side = vec![0.0; n];
+        moved.iter().for_each(|&(index, way)| side[index] = way);
+        side
+    };
+    let mut sides = Vec::new();
+    for index in 0..n {
+        sides.extend([-1.0, 1.0].map(|way| along(&[(index, way)])));
+        for other in index + 1..n {
+            for way in [-1.0, 1.0] {
+                sides.extend([-1.0, 1.0].map(|other_way| along(&[(index, way), (other, other_way)])));
+            }
+        }
+    }
+    sides
+}
+
+/// Standard error of each shape of `guess`: the jackknife over muscles, which counts what no curvature of a fit does, that each
+/// of them is missed by eq. 11 in its own way.
+pub(super) fn spread(members: &[&Member<'_>], guess: &CandidateEffect) -> Vec<f64> {
+    let left_out = |index: usize| {
+        let others: Vec<&Member<'_>> =
+            members.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, member)| *member).collect();
+        let gained = together(&others, guess)?;
+        Some(refined(&others, guess.clone(), gained).shape)
+    };
+    let shapes: Vec<Vec<f64>> = (0..members.len()).filter_map(left_out).collect();
+    let n = shapes.len().max(1) as f64;
+    let square = |index: usize| {
+        let mean = shapes.iter().map(|shape| shape[index]).sum::<f64>() / n;
+        shapes.iter().map(|shape| (shape[index] - mean).powi(2)).sum::<f64>() * (n - 1.0) / n
+    };
+    (0..guess.shape.len()).map(|index| square(index).sqrt()).collect()
+}
+
+/// The value that `member` has for itself, where it gains clearly more than the shared one does.
+pub(super) fn own_value(
+    member: &Member<'_>,
+    shared: &CandidateEffect,
+    worth: Worth,
+) -> Option<(CandidateEffect, Worth)> {
+    let alone = best(&[member], shared.effect)?;
+    (alone.each[0].log_ratio > worth.log_ratio + OWN_VALUE).then_some((alone.guess, alone.each[0]))
+}
+
+/// The shared estimate: shapes as they are, with the standard errors of all muscles together but no less than their `spread`, and
+/// the weighted mean of the amplitudes, with no less than what they scatter by.
+pub(super) fn pooled(guess: &CandidateEffect, each: &[&Estimate], spread: &[f64]) -> Estimate {
+    let n_shapes = guess.shape.len();
+    let n = n_shapes + guess.amplitudes().len();
+    let (mut values, mut errors) = (guess.shape.clone(), Vec::with_capacity(n));
+    for index in 0..n {
+        let told = each.iter().filter_map(|estimate| {
+            let error = estimate.errors[index].filter(|error| error.is_finite() && *error > 0.0)?;
+            Some((estimate.values[index], error.powi(-2)))
+        });
+        let (weighted, weight) = told.fold((0.0, 0.0), |sum, (value, weight)| (sum.0 + weight * value, sum.1 + weight));
+        if index >= n_shapes {
+            let plain = each.iter().map(|estimate| estimate.values[index]).sum::<f64>() / each.len().max(1) as f64;
+            values.push(if weight > 0.0 { weighted / weight } else { plain });
+        }
+        let scattered = match spread.get(index) {
+            Some(spread) => *spread,
+            None => {
+                let squares = each.iter().map(|estimate| (estimate.values[index] - values[index]).powi(2)).sum::<f64>();
+                let n = each.len() as f64;
+                if n > 1.0 { (squares / (n * (n - 1.0))).sqrt() } else { 0.0 }
+            }
+        };
+        errors.push((weight > 0.0).then(|| weight.sqrt().recip().max(scattered)));
+    }
+    Estimate { values, errors }
+}
+
+/// Whether an amplitude of `own` differs from that of `shared` by more than chance and by enough to matter.
+pub(super) fn is_apart(guess: &CandidateEffect, own: &Estimate, shared: &Estimate) -> bool {
+    (guess.shape.len()..own.values.len()).any(|index| {
+        let error = |estimate: &Estimate| estimate.errors[index].unwrap_or(f64::INFINITY);
+        let apart = (own.values[index] - shared.values[index]).abs();
+        apart > APART.0 * error(own).hypot(error(shared)) && apart > APART.1 * shared.values[index].abs()
+    })
+}
+
+/// What both cover.
+fn wider(left: Seen, right: Seen) -> Seen {
+    let both = |left: (f64, f64), right: (f64, f64)| (left.0.min(right.0), left.1.max(right.1));
+    Seen {
+        contraction_ratio: both(left.contraction_ratio, right.contraction_ratio),
+        pressure_pa: both(left.pressure_pa, right.pressure_pa),
+        force_n: both(left.force_n, right.force_n),
+        duration_s: left.duration_s.max(right.duration_s),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::hypothesis::Sign;
+
+    fn mass() -> CandidateEffect {
+        let effect = pam_core::effects::effect("inertia").expect("an id");
+        CandidateEffect { effect, shape: vec![200.0], sign: Sign::Any, carried: false }
+    }
+
+    fn estimate(mass_kg: f64, error_kg: f64) -> Estimate {
+        Estimate { values: vec![200.0, mass_kg], errors: vec![None, Some(error_kg)] }
+    }
+
+    #[test]
+    fn shapes_that_make_up_for_one_another_are_found_both() {
+        let effect = pam_core::effects::effect("channel-delay").expect("an id");
+        let start = CandidateEffect { effect, shape: vec![0.005, 0.02], sign: Sign::Any, carried: false };
+        // A valley along the sum, which steps along one shape at a time do not get out of.
+        let gains = |guess: &CandidateEffect| {
+            let (pressure_s, length_s) = (guess.shape[0], guess.shape[1] - 0.025);
+            Some(-((pressure_s + length_s) / 1e-4).powi(2) - ((pressure_s - length_s) / 0.02).powi(2))
+        };
+        let found = descended(start.clone(), gains(&start).expect("a gain"), 1.0, ROUNDS, &gains);
+        assert!(found.shape[0].abs() < 5e-4 && (found.shape[1] - 0.025).abs() < 5e-4, "{found:?}");
+    }
+
+    #[test]
+    fn amplitudes_are_averaged_by_what_each_muscle_knows_of_them() {
+        let (sure, unsure) = (estimate(2.0, 0.1), estimate(5.0, 1.0));
+        let shared = pooled(&mass(), &[&sure, &unsure], &[0.0]);
+        assert!((shared.values[1] - (2.0 + 5.0 / 100.0) / 1.01).abs() < 1e-12);
+        assert!(shared.errors[0].is_none());
+        // They agree less than they claim to.
+        assert!(shared.errors[1].is_some_and(|error| error > 1.0));
+        let alike = pooled(&mass(), &[&sure, &estimate(2.01, 0.1)], &[0.0]);
+        assert!(alike.errors[1].is_some_and(|error| (error - 0.1 / 2.0_f64.sqrt()).abs() < 1e-9));
+    }
+
+    #[test]
+    fn a_value_is_apart_where_neither_chance_nor_size_excuses_it() {
+        let shared = estimate(2.0, 0.05);
+        assert!(is_apart(&mass(), &estimate(3.5, 0.2), &shared));
+        assert!(!is_apart(&mass(), &estimate(3.5, 0.6), &shared));
+        assert!(!is_apart(&mass(), &estimate(2.4, 0.01), &shared));
+    }
+}

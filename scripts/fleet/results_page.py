@@ -1,0 +1,101 @@
+"""The page RESULTS.md from what results.json keeps."""
+
+
+def page(results):
+    lines = ["# Fleets: what they cost, and what is found", "",
+             "Written by `scripts/fleet/measure`, `prove-since`, `prove-group` and `test-slurm` from `results.json`; not edited by hand.", ""]
+    fleets = [results["fleets"][size] for size in sorted(results.get("fleets", {}), key=int)]
+    if fleets:
+        lines += [
+            "## Cost", "",
+            "Processor time of a whole run (identify, predict, diagnose with its page, train an inverse) and of the same programs "
+            "without an engine. The engine's share is what a run takes beyond that; a second run, where nothing has changed, "
+            "does nothing but look.", "",
+            "| muscles | rows of a recording | programs alone, per muscle | the run, per muscle | engine over work | on the clock | nothing changed, on the clock |",
+            "|---:|---:|---:|---:|---:|---:|---:|",
+        ]
+        for one in fleets:
+            n, share = one["muscles"], one["engine_s"] / one["work_s"] - 1
+            lines.append(f"| {n} | {one['rows']} | {one['work_s'] / n:.2f} s | {one['engine_s'] / n:.2f} s | {100 * share:.0f} % "
+                         f"| {one['clock_s']:.0f} s | {one['again_clock_s']:.1f} s |")
+        lines += [
+            "", "## What is found", "",
+            "Muscles drawn at random; effects at twice their typical severity in some of them, one recording broken in others.", "",
+            "| muscles | effects concealed | stand out | right name | sound | false alarms | broken | refused by name |",
+            "|---:|---:|---:|---:|---:|---:|---:|---:|",
+        ]
+        for one in fleets:
+            lines.append("| " + " | ".join(str(one[key]) for key in (
+                "muscles", "concealed", "found", "right_name", "sound", "false_alarms", "broken", "refused_by_name")) + " |")
+        for one in fleets:
+            for title, key in (("Missed", "missed"), ("False alarms", "alarms"), ("Sound, and refused", "sound_refused"),
+                               ("Broken, and not refused", "not_refused")):
+                if one[key]:
+                    lines += ["", f"{title} among {one['muscles']}:", "", *(f"- {what}" for what in one[key])]
+        lines.append("")
+    reports = [results["reports"][size] for size in sorted(results.get("reports", {}), key=int)]
+    if reports:
+        lines += ["## Report", "", "`pam-fleet` alone, on artifacts made by script.", "",
+                  "| campaigns | time | peak memory | page |", "|---:|---:|---:|---:|"]
+        lines += [f"| {one['muscles']} | {one['clock_s']:.2f} s | {one['peak_mb']:.0f} MB | {one['page_mb']:.1f} MB |"
+                  for one in reports]
+        lines.append("")
+    if "since" in results:
+        since = results["since"]
+        cases = since["changed"] + since["controls"]
+        lines += [
+            "## What has changed", "",
+            "`pam-diagnose --since` on muscles drawn at random and recorded at two dates (`scripts/fleet/prove-since`): twenty kinds of "
+            "changes concealed, every other muscle with an effect that was there before, every other one with other protocols later; "
+            "controls without a change. Named: the change stands among what is named. Named alone: nothing else does, and "
+            "nothing else explains it as well. Silent: nothing is named that did not change. Thresholds were chosen with these "
+            "muscles in view.", "",
+            "| changed | named | | named alone | controls | silent, of all | |", "|---:|---:|---:|---:|---:|---:|---:|",
+            f"| {since['changed']} | {since['named']} | {100 * since['named'] / since['changed']:.0f} % | {since['alone']} "
+            f"| {since['controls']} | {since['silent']} | {100 * since['silent'] / cases:.0f} % |",
+        ]
+        for title, key in (("Missed", "missed"), ("Said of what did not change", "said")):
+            if since[key]:
+                lines += ["", f"{title}:", "", *(f"- {what}" for what in since[key])]
+        lines.append("")
+    if "group" in results:
+        lines += together(results["group"])
+    if "two_lengths" in results:
+        lines += two_lengths(results["two_lengths"])
+    if "slurm" in results:
+        lines += ["## Slurm", "", results["slurm"], ""]
+    if "machine" in results:
+        lines += [f"Times measured on {results['machine']}.", ""]
+    return "\n".join(lines)
+
+
+def together(group):
+    """Rigs of five muscles each, together and one by one."""
+    lines = [
+        "## Muscles of one rig together", "",
+        "`pam-diagnose --group` on five muscles of the independent bench to a rig (`scripts/fleet/prove-group`), with other laws, sensors "
+        "and protocols in each. A rig's effect is done to the columns of all of them, with one value; controls have none, every "
+        "other one a muscle with an effect of its own. False: names of rigs' effects that are not there. Thresholds were chosen on rigs of "
+        f"other seeds; these are from {group['first']} on, judged once.", "",
+        "| | concealed | named | false | in controls | false |", "|---|---:|---:|---:|---:|---:|",
+        f"| rigs, muscles together | {group['rigs']} | {group['named']} | {group['false']} | {group['sound']} | {group['false_sound']} |",
+        f"| muscles, each alone | {group['muscles_concealed']} | {group['named_alone']} | {group['false_alone_concealed']} "
+        f"| {group['muscles'] - group['muscles_concealed']} | {group['false_alone_sound']} |",
+        "", f"Beside what the rig does, {group['false_own']} of {group['muscles']} muscles keep a name of a rig's effect. What was held out "
+        f"(RMSE over all samples, root mean square over the muscles of a rig) is followed worse than by single diagnoses, by more than 1 %, on {group['worse']} of "
+        f"{group['rigs'] + group['sound']} rigs.",
+    ]
+    for title, key in (("Missed", "missed"), ("Said of what is not there", "said")):
+        if group[key]:
+            lines += ["", f"{title}:", "", *(f"- {what}" for what in group[key])]
+    return [*lines, ""]
+
+
+def two_lengths(real):
+    """Two real muscles of one make."""
+    lines = ["Two lengths of one make that somebody recorded on one rig (`scripts/fetch-recordings`), one repeat of each length fitted and one "
+             f"held out, RMSE over all samples: {real['statement']}", "",
+             "| muscle | a single diagnosis names | held out: eq. 11 | alone | together | sensors |", "|---|---|---:|---:|---:|---:|"]
+    lines += [f"| {one['name']} | {', '.join(one['alone']) or '-'} | {one['base_all_n']:.2f} N | {one['alone_all_n']:.2f} N | {one['together_all_n']:.2f} N "
+              f"| {one['noise_floor_n']:.2f} N |" for one in real["muscles"]]
+    return [*lines, ""]
