@@ -57,7 +57,7 @@ impl Agreement {
         let base_holdout = evaluate(holdout, base)?;
         let holdout_without_terms = match (&diagnosis.without_terms, &diagnosis.empirical) {
             (Some(without), _) => evaluate_augmented(holdout, &without.without_events(), model.direction)?.together,
-            (None, Some(_)) => base_holdout.together.clone(),
+            (None, Some(_)) => base_holdout.together,
             (None, None) => None,
         };
         Ok(Self {

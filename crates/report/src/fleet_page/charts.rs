@@ -50,7 +50,7 @@ fn in_a_handy_unit(chart: &FleetChart) -> (FleetChart, &str) {
     let scaled = |point: &FleetPoint| FleetPoint {
         value: factor * point.value,
         stderr: point.stderr.map(|stderr| factor * stderr),
-        ..point.clone()
+        ..*point
     };
     let chart = FleetChart {
         points: chart.points.iter().map(scaled).collect(),
