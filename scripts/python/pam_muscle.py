@@ -392,7 +392,8 @@ class Stribeck:
         else:
             slide_m, last_m_per_s, last_level = self.last
             crawl = self.crawl(max(speed_m_per_s, last_m_per_s))
-            level = crawl + (last_level - crawl) * math.exp(-abs(now.slide_m - slide_m) / self.RENEWAL_M)
+            renewed = abs(now.slide_m - slide_m) / self.RENEWAL_M + self.values["aging_per_s"] * now.step_s
+            level = crawl + (last_level - crawl) * math.exp(-renewed)
         self.last = (now.slide_m, speed_m_per_s, level)
         return -now.direction * base.normal_n * level * self.values["static_friction"]
 

@@ -15,7 +15,8 @@ fn crates() -> Vec<(String, String)> {
         let Ok(manifest) = fs::read_to_string(folder.join("Cargo.toml")) else { continue };
         let manifest: toml::Table = manifest.parse().expect("the map and the crates can be read");
         let name = manifest["package"]["name"].as_str().expect("the map and the crates can be read").to_owned();
-        crates.push((folder.file_name().expect("the map and the crates can be read").to_str().unwrap().to_owned(), name));
+        crates
+            .push((folder.file_name().expect("the map and the crates can be read").to_str().unwrap().to_owned(), name));
     }
     assert!(crates.len() > 10, "{crates:?}");
     crates

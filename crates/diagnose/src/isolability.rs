@@ -55,7 +55,7 @@ static TYPICAL: [Typical; 22] = [
     Typical { id: "presliding-hysteresis", shapes: &[&[1e-3, 1.0]], amplitudes: &[] },
     Typical { id: "rubber-hysteresis", shapes: &[&[2e-3]], amplitudes: &[5.0] },
     // Half of an f' of 1.2e-3.
-    Typical { id: "stribeck", shapes: &[&[5e-3, 1.0]], amplitudes: &[6e-4] },
+    Typical { id: "stribeck", shapes: &[&[5e-3, 1.0, 0.0]], amplitudes: &[6e-4] },
     Typical { id: "rate-dependent-hysteresis", shapes: &[&[3e-4]], amplitudes: &[1e-4] },
     Typical { id: "load-dependent-friction", shapes: &[&[]], amplitudes: &[0.03] },
     Typical { id: "viscous-damping", shapes: &[&[]], amplitudes: &[100.0, 100.0] },

@@ -282,8 +282,8 @@ mod tests {
 
     #[test]
     fn an_exponent_at_its_end_is_a_form_and_a_speed_at_its_end_is_another_effect() {
-        assert!(!is_degenerate(of("stribeck"), &[5e-3, 0.5]));
-        assert!(is_degenerate(of("stribeck"), &[5e-2, 1.0]));
+        assert!(!is_degenerate(of("stribeck"), &[5e-3, 0.5, 0.0]));
+        assert!(is_degenerate(of("stribeck"), &[5e-2, 1.0, 0.0]));
         assert!(!is_degenerate(of("force-drift"), &[4e3]));
     }
 }

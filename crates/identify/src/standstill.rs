@@ -40,9 +40,12 @@ const TURNING_ROWS: usize = 200_000;
 /// Share of the mean square that a law must gain over friction that follows the pressure at once.
 const CLEARLY: f64 = 0.01;
 
-/// Share of the mean square that friction of which the pressure turns only a share must gain over all other laws. Two real muscles,
-/// whose friction turns over wholly, gain 2 % at most.
+/// Share of the mean square that friction of which the pressure turns only a share must gain over all other laws, beside a pressure
+/// that is late: while the length rests, that too answers every change of the pressure. Two real muscles, whose friction turns over
+/// wholly, gain 2 % at most.
 const PARTLY: f64 = 0.05;
+/// Time over which a change of the pressure is taken, in s: that of a delay or a lag that instruments have.
+const LATE_S: f64 = 0.05;
 
 /// The same for a travel in which friction turns over, which shows in a few samples only.
 const HARDLY: f64 = 5e-4;
@@ -62,29 +65,57 @@ pub fn judge(
         .chain([Standstill::Held])
         .collect();
     let stride = stride(recordings);
-    let judge = |laws: Vec<Standstill>| -> Result<Vec<StandstillFit>, IdentifyError> {
+    let fitted = |laws: Vec<Standstill>, late: Option<&[Vec<f64>]>| -> Result<Vec<StandstillFit>, IdentifyError> {
         let fitted = laws.into_par_iter().map(|standstill| {
-            let left =
-                mean_square(recordings, columns, Thresholds { standstill, ..thresholds }, Counts::Settled(stride))?;
+            let thresholds = Thresholds { standstill, ..thresholds };
+            let left = mean_square(recordings, columns, thresholds, Counts::Settled(stride), late)?;
             Ok(StandstillFit { standstill, rmse_n: left.sqrt() })
         });
         fitted.collect()
     };
-    let mut judged = judge(laws)?;
+    let mut judged = fitted(laws.clone(), None)?;
     let most_n = judged[0].rmse_n * (1.0 - CLEARLY).sqrt();
     // As good is not better: what follows the pressure stays first where nothing clearly beats it.
     judged.sort_by(|left, right| {
-        let rank = |judged: &StandstillFit| {
-            if judged.standstill == Standstill::AT_ONCE { judged.rmse_n.min(most_n) } else { judged.rmse_n }
+        let rank = |law: &StandstillFit| {
+            if law.standstill == Standstill::AT_ONCE { law.rmse_n.min(most_n) } else { law.rmse_n }
         };
         rank(left).total_cmp(&rank(right))
     });
     let partly = OVER_PA.iter().skip(1).flat_map(|&over_pa| SHARES.map(|share| Standstill::Slides { over_pa, share }));
-    let best = judge(partly.collect())?.into_iter().min_by(|one, other| one.rmse_n.total_cmp(&other.rmse_n));
-    if let Some(best) = best.filter(|best| best.rmse_n < judged[0].rmse_n * (1.0 - PARTLY).sqrt()) {
-        judged.insert(0, best);
+    let best = least(fitted(partly.collect(), None)?);
+    let most = (1.0 - PARTLY).sqrt();
+    if let Some(best) = best.filter(|best| best.rmse_n < most * judged[0].rmse_n) {
+        let late: Result<Vec<Vec<f64>>, IdentifyError> =
+            recordings.iter().map(|prepared| changes_pa(prepared)).collect();
+        let late = late?;
+        let wholly = least(fitted(laws, Some(&late))?);
+        let partly = least(fitted(vec![best.standstill], Some(&late))?);
+        if partly.zip(wholly).is_some_and(|(partly, wholly)| partly.rmse_n < most * wholly.rmse_n) {
+            judged.insert(0, best);
+        }
     }
     Ok(judged)
+}
+
+fn least(laws: Vec<StandstillFit>) -> Option<StandstillFit> {
+    laws.into_iter().min_by(|one, other| one.rmse_n.total_cmp(&other.rmse_n))
+}
+
+/// What the pressure changes by within [`LATE_S`] around every row, in Pa.
+fn changes_pa(prepared: &Prepared) -> Result<Vec<f64>, IdentifyError> {
+    let samples = &prepared.recording.samples;
+    let n_rows = samples.n_rows();
+    let mut pressure_pa = Vec::with_capacity(n_rows);
+    while pressure_pa.len() < n_rows {
+        let chunk = samples
+            .chunk(pressure_pa.len() / CHUNK_ROWS)
+            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+        pressure_pa.extend_from_slice(chunk.pressure_pa());
+    }
+    let half = ((0.5 * LATE_S / prepared.quality.period_s).round() as usize).max(1);
+    let change = |row: usize| pressure_pa[(row + half).min(n_rows - 1)] - pressure_pa[row.saturating_sub(half)];
+    Ok((0..n_rows).map(change).collect())
 }
 
 /// Whether `laws` leave the same: nothing that they were judged by tells them apart.
@@ -117,7 +148,7 @@ pub fn turning(
         .collect();
     let judged: Result<Vec<(f64, Thresholds)>, IdentifyError> = travels
         .into_par_iter()
-        .map(|travels| Ok((mean_square(recordings, columns, travels, Counts::First(first))?, travels)))
+        .map(|travels| Ok((mean_square(recordings, columns, travels, Counts::First(first), None)?, travels)))
         .collect();
     let judged = judged?;
     let most = (1.0 - HARDLY) * judged[0].0;
@@ -140,16 +171,19 @@ enum Counts {
     First(usize),
 }
 
-/// What the columns leave of the force under `thresholds`, in N².
+/// What the columns leave of the force under `thresholds`, in N²; beside a pressure that is `late`, of which that is the change
+/// around every row of every recording, where it is given.
 fn mean_square(
     recordings: &[&Prepared],
     columns: &ForceColumns,
     thresholds: Thresholds,
     counts: Counts,
+    late: Option<&[Vec<f64>]>,
 ) -> Result<f64, IdentifyError> {
-    let mut total = Summary::new(N_COLUMNS);
-    for prepared in recordings {
-        let part = condensed(prepared, columns, thresholds, counts)
+    let mut total = Summary::new(N_COLUMNS + usize::from(late.is_some()));
+    for (index, prepared) in recordings.iter().enumerate() {
+        let change_pa = late.map(|late| late[index].as_slice());
+        let part = condensed(prepared, columns, thresholds, counts, change_pa)
             .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
         total.merge(&part);
     }
@@ -161,6 +195,7 @@ fn condensed(
     columns: &ForceColumns,
     thresholds: Thresholds,
     counts: Counts,
+    change_pa: Option<&[f64]>,
 ) -> io::Result<Summary> {
     debug_assert_eq!(columns.form(), Form::Corrected);
     let n_rows = prepared.recording.samples.n_rows();
@@ -173,8 +208,11 @@ fn condensed(
     for rows in prepared.direction.left_out() {
         left_out[rows.start.min(n_rows)..rows.end.min(n_rows)].fill(true);
     }
-    let width = N_COLUMNS + 1;
-    let mut summary = Summary::new(N_COLUMNS);
+    let n_columns = N_COLUMNS + usize::from(change_pa.is_some());
+    let width = n_columns + 1;
+    let mut summary = Summary::new(n_columns);
+    let late_n =
+        |change_pa: f64, length_m: f64| columns.gas().force_n(change_pa, columns.contraction_ratio(length_m), 1.0, 1.0);
     let mut block = vec![0.0; BLOCK_ROWS * width];
     let mut filled = 0;
     let samples = &prepared.recording.samples;
@@ -186,10 +224,12 @@ fn condensed(
             let settled = |direction: &Direction| direction.is_settled(row) || !direction.is_known(row);
             let counts = matches!(counts, Counts::First(_)) || settled(&direction) && settled(&prepared.direction);
             if counts && !left_out[row] {
-                let values = columns.row(chunk.pressure_pa()[here], chunk.length_m()[here], direction.sign(row));
+                let length_m = chunk.length_m()[here];
+                let values = columns.row(chunk.pressure_pa()[here], length_m, direction.sign(row));
+                let late = change_pa.map(|change_pa| late_n(change_pa[row], length_m));
                 let force_n = chunk.force_n()[here];
-                if force_n.is_finite() && values.iter().all(|value| value.is_finite()) {
-                    for (column, value) in values.iter().chain([&force_n]).enumerate() {
+                if force_n.is_finite() && values.iter().chain(&late).all(|value| value.is_finite()) {
+                    for (column, value) in values.iter().chain(&late).chain([&force_n]).enumerate() {
                         block[column * BLOCK_ROWS + filled] = *value;
                     }
                     filled += 1;

@@ -1,11 +1,12 @@
 //! Stribeck effect: friction that is larger at a crawl than in motion.
 //!
 //! ```text
-//! F = F_base - s f_s p π D L h,   dh/|dx| = (exp(-(|v| / v_s)ⁿ) - h) / δ,   δ = 0.1 mm
+//! F = F_base - s f_s p π D L h,   dh/dt = (exp(-(|v| / v_s)ⁿ) - h) (|v| / δ + a),   δ = 0.1 mm
 //! ```
 //!
-//! Friction follows the speed with the travel that renews the contacts: a stop from full speed leaves it small until the next
-//! move, as a rest does not push.
+//! Friction follows the speed with the travel that renews the contacts, and with their age: without any aging a stop from full
+//! speed leaves it small until the next move, as a rest does not push; contacts that age at once follow the static curve of
+//! Stribeck, whose friction at rest is the largest.
 
 use super::page::{Confusion, Page, Symbol};
 use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
@@ -15,6 +16,9 @@ use crate::muscle::Muscle;
 /// Travel over which contacts are renewed, in m: an assumption. It lets friction remember the speed that it came from (the
 /// frictional memory of Armstrong-Hélouvry, Dupont and Canudas de Wit, 1994), so that a stop does not push.
 const RENEWAL_M: f64 = 1e-4;
+
+/// Rate at which contacts age at once, on the grid of any recording, in 1/s.
+const AT_ONCE_PER_S: f64 = 200.0;
 
 /// The effect.
 #[derive(Debug)]
@@ -42,6 +46,7 @@ impl Effect for Stribeck {
                 grid: &[1e-3, 2e-3, 5e-3, 1e-2, 2e-2],
             },
             Shape { name: "exponent", unit: "1", range: (0.5, 2.5), grid: &[1.0, 2.0] },
+            Shape { name: "aging_per_s", unit: "1/s", range: (0.0, AT_ONCE_PER_S), grid: &[0.0, 1.0, AT_ONCE_PER_S] },
         ]
     }
 
@@ -49,19 +54,20 @@ impl Effect for Stribeck {
         &[Amplitude { name: "static_friction", unit: "1", range: (0.0, 0.02) }]
     }
 
-    /// The exponent may.
+    /// The exponent and the aging may.
     fn may_end(&self, index: usize, _end: f64) -> bool {
-        index == 1
+        index > 0
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { stribeck_speed_m_per_s: shape[0], exponent: shape[1], last: None })
+        Box::new(State { stribeck_speed_m_per_s: shape[0], exponent: shape[1], aging_per_s: shape[2], last: None })
     }
 }
 
 struct State {
     stribeck_speed_m_per_s: f64,
     exponent: f64,
+    aging_per_s: f64,
     last: Option<Last>,
 }
 
@@ -82,7 +88,8 @@ impl Memory for State {
             Some(last) if last.recording == now.recording => {
                 // In a step in which it starts or stops, the way is that of its motion.
                 let crawl = crawl(speed_m_per_s.max(last.speed_m_per_s));
-                crawl + (last.level - crawl) * (-(now.slide_m - last.slide_m).abs() / RENEWAL_M).exp()
+                let renewed = (now.slide_m - last.slide_m).abs() / RENEWAL_M + self.aging_per_s * now.step_s;
+                crawl + (last.level - crawl) * (-renewed).exp()
             }
             _ => crawl(speed_m_per_s),
         };
@@ -96,7 +103,7 @@ static PAGE: Page = Page {
     name: "Stribeck effect",
     summary: "Friction of the braid is larger at a crawl than in motion. It falls with the speed over some millimetres \
               per second and breaks away after a rest, which makes slow motion under a soft load jerky.",
-    equation: "F = F_base - s f_s p π D L h,  dh/|dx| = (exp(-(|v| / v_s)ⁿ) - h) / δ,  δ = 0.1 mm",
+    equation: "F = F_base - s f_s p π D L h,  dh/dt = (exp(-(|v| / v_s)ⁿ) - h) (|v| / δ + a),  δ = 0.1 mm",
     symbols: &[
         Symbol {
             symbol: "f_s",
@@ -105,11 +112,16 @@ static PAGE: Page = Page {
         },
         Symbol { symbol: "v_s", unit: "m/s", meaning: "speed at which 63 % of it are gone; 1 to 20 mm/s" },
         Symbol { symbol: "n", unit: "1", meaning: "how steeply it falls: 1 exponentially, 2 as a bell curve" },
+        Symbol {
+            symbol: "a",
+            unit: "1/s",
+            meaning: "aging at rest: 0 a stop changes nothing, 200 at once static friction",
+        },
         Symbol { symbol: "s", unit: "1", meaning: "direction of motion, kept at standstill" },
         Symbol { symbol: "v", unit: "m/s", meaning: "speed of contraction" },
-        Symbol { symbol: "h", unit: "1", meaning: "1 at a crawl, 0 in motion; it follows with the travel" },
+        Symbol { symbol: "h", unit: "1", meaning: "1 at a crawl, 0 in motion; it follows with travel and age" },
     ],
-    validity: "Motion that is long against the pre-sliding distance; the age of a contact at rest is left out.",
+    validity: "Motion that is long against the pre-sliding distance; static friction that goes on growing for minutes is left out.",
     source: "Tondu and Lopez (2000), IEEE Control Systems 20(2), for threads on threads; Armstrong-Hélouvry, Dupont and \
              Canudas de Wit (1994), Automatica 30(7), for friction with a memory, whose travel δ is an assumption",
     signature: "The residual is odd in the direction and sits at low speed: half the width of an isobaric loop falls \
@@ -146,7 +158,7 @@ mod tests {
     #[test]
     fn it_falls_from_static_friction_to_nothing() {
         let at = |slide_speed_m_per_s| {
-            let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0]);
+            let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0, 0.0]);
             pull(&mut *memory, &Moment { slide_speed_m_per_s, ..still() }, &base())[0]
         };
         assert_eq!(at(0.0), -base().normal_n);
@@ -156,7 +168,7 @@ mod tests {
 
     #[test]
     fn a_stop_leaves_it_as_it_was_and_a_crawl_renews_it() {
-        let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0]);
+        let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0, 0.0]);
         let mut at = |slide_m, slide_speed_m_per_s| {
             pull(&mut *memory, &Moment { slide_m, slide_speed_m_per_s, ..still() }, &base())[0] / -base().normal_n
         };
@@ -170,8 +182,23 @@ mod tests {
     }
 
     #[test]
+    fn contacts_that_age_follow_the_static_curve_at_rest() {
+        for (aging_per_s, expected) in [(0.0, 0.0), (1.0, 1.0 - (-1.0_f64).exp()), (AT_ONCE_PER_S, 1.0)] {
+            let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0, aging_per_s]);
+            let mut at = |slide_speed_m_per_s| {
+                let now = Moment { slide_speed_m_per_s, step_s: 1.0 / 50.0, ..still() };
+                pull(&mut *memory, &now, &base())[0] / -base().normal_n
+            };
+            at(1.0);
+            // The step of the stop belongs to the motion, then 50 steps make a second.
+            let level = (0..51).fold(0.0, |_, _| at(0.0));
+            assert!((level - expected).abs() < 1e-6, "{aging_per_s}: {level}");
+        }
+    }
+
+    #[test]
     fn it_opposes_the_motion() {
-        let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0]);
+        let mut memory = Stribeck.start(&nominal(), &[5e-3, 1.0, 0.0]);
         let now = Moment { slide_speed_m_per_s: -1e-3, direction: -1.0, ..still() };
         assert!(pull(&mut *memory, &now, &base())[0] > 0.0);
     }

@@ -3,7 +3,7 @@
 use crate::force::Parameter;
 
 /// Parameters of effects: id, name in artifacts, symbol.
-const OF_EFFECTS: [(&str, &str, &str); 54] = [
+const OF_EFFECTS: [(&str, &str, &str); 55] = [
     ("braid-lockup", "lock_contraction", "ε_l"),
     ("braid-lockup", "onset_contraction", "w"),
     ("braid-lockup", "stiffness_n", "K"),
@@ -47,6 +47,7 @@ const OF_EFFECTS: [(&str, &str, &str); 54] = [
     ("slack", "softness_n", "w"),
     ("stribeck", "stribeck_speed_m_per_s", "v_s"),
     ("stribeck", "exponent", "n"),
+    ("stribeck", "aging_per_s", "a"),
     ("stribeck", "static_friction", "f_s"),
     ("thermal-softening", "time_constant_s", "τ"),
     ("thermal-softening", "softening_per_kilowatt", "d"),

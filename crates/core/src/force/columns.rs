@@ -78,6 +78,11 @@ impl ForceColumns {
         &self.gas
     }
 
+    /// Contraction ratio at `length_m`.
+    pub fn contraction_ratio(&self, length_m: f64) -> f64 {
+        self.kinematics.contraction_ratio(length_m)
+    }
+
     /// The columns at one instant; `direction` is +1 contracting, -1 extending, 0 neither.
     pub fn row(&self, pressure_pa: f64, length_m: f64, direction: f64) -> [f64; N_COLUMNS] {
         let mut row = [0.0; N_COLUMNS];

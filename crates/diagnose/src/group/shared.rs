@@ -72,7 +72,8 @@ pub(super) fn polished(members: &[&Member<'_>], guess: CandidateEffect) -> Candi
 }
 
 /// `guess`, which gains `gained`, with shapes that gain most by `gains`: steps to all sides, one shape or two at a time, since
-/// one of two delays makes up for the other. The first are `share` of the distance on the grid, half as long in every round.
+/// one of two delays makes up for the other. The first are `share` of the distance on the grid, half as long in every round; two of
+/// one unit are of one length.
 fn descended(
     guess: CandidateEffect,
     gained: f64,
@@ -87,6 +88,7 @@ fn descended(
     let mut best = (gained, guess);
     for _ in 0..rounds {
         for side in &sides {
+            let steps = alike(shapes, &steps, side);
             for _ in 0..MOST_STEPS {
                 let mut tried = best.1.clone();
                 for (index, parameter) in shapes.iter().enumerate() {
@@ -105,6 +107,15 @@ fn descended(
         steps.iter_mut().for_each(|step| *step *= 0.5);
     }
     best.1
+}
+
+/// `steps` along `side`; shapes of one unit that move together make the longest of them.
+fn alike(shapes: &[Shape], steps: &[f64], side: &[f64]) -> Vec<f64> {
+    let longest = |unit: &str| {
+        let moved = shapes.iter().zip(steps).zip(side).filter(|((shape, _), way)| shape.unit == unit && **way != 0.0);
+        moved.map(|((_, step), _)| *step).fold(0.0, f64::max)
+    };
+    shapes.iter().map(|shape| longest(shape.unit)).collect()
 }
 
 /// Ways to step among `n` shapes: along each, and along every two of them.

@@ -14,7 +14,8 @@ static inline double pam_stribeck_pulls(pam_stribeck *memory, const pam_moment *
     const double speed_m_per_s = fabs(now->slide_speed_m_per_s);
     double level = pam_stribeck_crawl(memory->started ? fmax(speed_m_per_s, memory->speed_m_per_s) : speed_m_per_s);
     if (memory->started) {
-        level += (memory->level - level) * exp(-fabs(now->slide_m - memory->slide_m) / renewal_m);
+        const double renewed = fabs(now->slide_m - memory->slide_m) / renewal_m + PAM_STRIBECK_AGING_PER_S * now->step_s;
+        level += (memory->level - level) * exp(-renewed);
     }
     memory->started = 1;
     memory->slide_m = now->slide_m;
