@@ -12,6 +12,7 @@ use pam_core::recording::Recording;
 use pam_identification::evaluate::{evaluate, evaluate_augmented, noise_floor_n};
 use pam_identification::prepare::{Prepared, redirect};
 
+use crate::carried;
 use crate::check;
 use crate::discover;
 use crate::error::DiagnoseError;
@@ -19,7 +20,6 @@ use crate::given::Given;
 use crate::isolability::isolability;
 use crate::knocks::{self, InertialTransient};
 use crate::laws;
-use crate::map_held;
 use crate::named::{candidates, map_entry, named, term_entry};
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::own;
@@ -212,15 +212,22 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     if !too_short.is_empty() && knocks.is_none() {
         sizes = Sizes::of(&found, &question.limits);
     }
+    if let Some(held) = held.as_ref().filter(|_| knocks.is_none())
+        && carried::let_go_of_what_models_nothing(&setting, &mut found, held)
+    {
+        sizes = Sizes::of(&found, &question.limits);
+    }
     given.beside_effects(&question, &track, &found, !rig.is_empty());
     let space = &question.space;
     observer(steps - 1, steps);
     let verdict = verdict(&found, &sizes, knocks.is_some());
     let discovery = discover::discover(&setting, &found, &sizes, verdict, held.as_ref());
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
-    let lean = held.as_ref().filter(|_| discovery.is_none());
-    let lean = lean.and_then(|held| map_held::without_it(&setting, &found, held));
-    let (state, nuisance) = match (&discovery, &lean) {
+    let carried = match &discovery {
+        Some(_) => None,
+        None => carried::leaves_least(&setting, &found, held.as_ref()),
+    };
+    let (state, nuisance) = match (&discovery, &carried) {
         (Some(discovery), _) => (&discovery.best.state, &discovery.nuisance),
         (None, Some((state, nuisance))) => (state, nuisance),
         (None, None) => (&found.best.state, &found.nuisance),

@@ -6,6 +6,7 @@
 
 pub mod artifact;
 pub mod base;
+mod carried;
 mod check;
 pub mod coordinates;
 mod coverage;
@@ -24,7 +25,7 @@ pub mod isolability;
 pub mod joint;
 pub mod knocks;
 mod laws;
-mod map_held;
+
 mod named;
 pub mod next_experiment;
 pub mod normal;

@@ -212,11 +212,11 @@ impl Nuisance {
         columns.map(|column| coefficients[column] * self.scales[column]).collect()
     }
 
-    /// The same without its static map.
+    /// The same without the columns of `groups`.
     #[must_use]
-    pub(crate) fn without_map(&self) -> Self {
-        let keeps = |group: &Group| !matches!(group, Group::EvenMap | Group::OddMap);
-        let kept: Vec<(Group, Range<usize>)> = self.groups.iter().filter(|(group, _)| keeps(group)).cloned().collect();
+    pub(crate) fn without(&self, groups: &[Group]) -> Self {
+        let keeps = |(group, _): &&(Group, Range<usize>)| !groups.contains(group);
+        let kept: Vec<(Group, Range<usize>)> = self.groups.iter().filter(keeps).cloned().collect();
         let columns: Vec<usize> = kept.iter().flat_map(|(_, columns)| columns.clone()).collect();
         let of = |values: &[f64]| columns.iter().map(|&column| values[column]).collect();
         let mut first = 0;

@@ -8,7 +8,7 @@ use super::screen::{self, Said};
 use super::{joined, stability};
 use crate::held_error::Left;
 use crate::joint::HeldOut;
-use crate::nuisance::Nuisance;
+use crate::nuisance::{Group, Nuisance};
 use crate::search::{Found, Judged, again, chance, fitting};
 use crate::state::Setting;
 use crate::track::Track;
@@ -127,7 +127,7 @@ pub(crate) fn discover(
 /// What is in beside sentences: nuisances without a static map, and with one that is as smooth as foretells held-out blocks best,
 /// so that nothing smooth and static is taken for a term.
 fn nuisances(setting: &Setting<'_>, found: &Found) -> Option<(Nuisance, Nuisance)> {
-    let plain = found.nuisance.without_map();
+    let plain = found.nuisance.without(&[Group::EvenMap, Group::OddMap]);
     let mapped = plain.with_map(setting.track, &found.coordinates);
     let (_, mapped) = fitting(&setting.beside(&plain), &found.best, &mapped)?;
     Some((plain, mapped))
