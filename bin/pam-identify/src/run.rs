@@ -10,7 +10,7 @@ use pam_core::force::Form;
 use pam_core::muscle::MuscleFile;
 use pam_core::recording::Recording;
 use pam_identification::faults::apart::{self, Apart};
-use pam_identification::faults::{disagree, noise, reading, spikes, twice, zero};
+use pam_identification::faults::{disagree, noise, reading, shaken, spikes, twice, zero};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
@@ -90,6 +90,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     artifact.muscle_name = muscle.name.clone();
     for prepared in found.estimation.iter().chain(&found.validation) {
         artifact.warnings.extend(spikes::warning(&prepared.recording, &prepared.quality)?);
+        artifact.warnings.extend(shaken::warning(&prepared.recording, &prepared.quality)?);
     }
     let prepared = found.estimation.iter().chain(&found.validation);
     let recordings: Vec<_> = prepared.map(|prepared| (&prepared.recording, &prepared.quality)).collect();

@@ -3,9 +3,10 @@
 //! model carries no other forms of its effects and no reversals of its recordings: fitted beside them, base and effects may leave
 //! more than fitted without.
 
-use pam_core::effects::AugmentedModel;
+use pam_core::effects::{AugmentedModel, Kind};
 
 use crate::held_error::Left;
+use crate::hypothesis::CandidateEffect;
 use crate::nuisance::{Group, Nuisance};
 use crate::search::Found;
 use crate::state::{Setting, State};
@@ -47,7 +48,9 @@ fn carried(setting: &Setting<'_>, found: &Found, state: &State, nuisance: &Nuisa
 /// Lets go of every name of `found` where the model with them leaves more than the base model alone, over all samples, of the
 /// recordings that it was fitted to and of `held`: it models nothing. Whether it did.
 pub(crate) fn let_go_of_what_models_nothing(setting: &Setting<'_>, found: &mut Found, held: &Track) -> bool {
-    if found.best.state.guesses.is_empty() {
+    // What happened once is on no other recording.
+    let is_judged = |guess: &CandidateEffect| guess.effect.kind() != Kind::Event;
+    if found.best.state.guesses.is_empty() || !found.best.state.guesses.iter().all(is_judged) {
         return false;
     }
     let (state, nuisance) =
@@ -58,7 +61,7 @@ pub(crate) fn let_go_of_what_models_nothing(setting: &Setting<'_>, found: &mut F
     if !raises(setting.track) || !raises(held) {
         return false;
     }
-    let ids: Vec<&'static str> = found.best.state.guesses.iter().map(|guess| guess.id()).collect();
+    let ids: Vec<&'static str> = found.best.state.guesses.iter().map(CandidateEffect::id).collect();
     for index in (0..ids.len()).rev() {
         if found.let_go(setting, index) {
             found.denied.push(ids[index]);

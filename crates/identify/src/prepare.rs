@@ -137,5 +137,6 @@ fn directed(
     let mut direction = Direction::of(recording, thresholds, driver)?;
     ends.reached(recording, quality)?.into_iter().for_each(|rows| direction.leave_out(rows));
     faults::spikes::rows(recording, quality)?.into_iter().for_each(|row| direction.leave_out(row..row + 1));
+    faults::shaken::rows(recording, quality)?.into_iter().for_each(|rows| direction.leave_out(rows));
     Ok(direction)
 }

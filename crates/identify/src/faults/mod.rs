@@ -1,7 +1,7 @@
 //! Instrument faults, looked for before any physics is.
 //!
 //! [`ranges`] finds units under the wrong name and recordings of another muscle from ranges alone;
-//! [`spikes`] and [`frozen`] find samples that no muscle makes; [`scale`] finds units that ranges do not show, [`zero`], after a fit,
+//! [`spikes`] and [`frozen`] find samples that no muscle makes, [`shaken`] those at which a hand shakes it; [`scale`] finds units that ranges do not show, [`zero`], after a fit,
 //! a gauge whose zero is elsewhere;
 //! [`channels`] finds swapped channels and a force of the wrong sign; [`disagree`] finds recordings that contradict one another;
 //! [`apart`], after a fit, one recording of several whose instrument reads otherwise; [`twice`] finds a recording that is there twice; [`noise`] says where noise hides everything; [`lag`] finds a channel that lags the others; [`reading`] says what an
@@ -17,6 +17,7 @@ pub mod noise;
 pub mod ranges;
 pub mod reading;
 pub mod scale;
+pub mod shaken;
 pub mod spikes;
 pub mod twice;
 pub mod zero;
