@@ -375,3 +375,69 @@ fn better_base(
     };
     Ok(if rmse_n(&identified)? <= rmse_n(refitted)? { identified } else { refitted.clone() })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use std::path::Path;
+
+    use pam_core::direction::Standstill;
+    use pam_core::recording::{Repairs, Samples};
+    use pam_identification::prepare::{direct, gate};
+
+    /// Back and forth between 0 and 1 in `period_s`, and the way it goes.
+    fn triangle(t: f64, period_s: f64) -> (f64, f64) {
+        let turns = (t / period_s).rem_euclid(1.0);
+        if turns < 0.5 { (2.0 * turns, 1.0) } else { (2.0 - 2.0 * turns, -1.0) }
+    }
+
+    /// A muscle that shortens and lengthens for 30 s and is then held while its pressure goes up and down: friction follows that, or
+    /// stays as the last motion left it.
+    fn recorded(path: &str, model: &ModelArtifact, follows: bool) -> Recording {
+        let force = model.force_model();
+        let row = |row: usize| {
+            let t = 0.02 * row as f64;
+            let (along, way) = triangle(t, 10.0);
+            let (length_m, pressure_pa, way) = if t < 30.0 {
+                (0.26 - 0.03 * along, 2e5 + 1e5 * (t / 10.0).floor(), way)
+            } else {
+                (0.26, 2e5 + 2e5 * along, if follows { way } else { -1.0 })
+            };
+            let noise_n = 0.3 * ((row * 7919 % 1013) as f64 / 506.0 - 1.0);
+            [t, pressure_pa, length_m, force.force_n(pressure_pa, length_m, way) + noise_n]
+        };
+        let rows: Vec<[f64; 4]> = (0..4000).map(row).collect();
+        let [time_s, pressure_pa, length_m, force_n] =
+            [0, 1, 2, 3].map(|column| rows.iter().map(|row| row[column]).collect::<Vec<f64>>());
+        let samples = Samples::from_columns(&time_s, &pressure_pa, &length_m, &force_n);
+        let segments = vec![0..samples.n_rows(); 1];
+        let (sha256, repairs) = (String::new(), Repairs::default());
+        Recording { path: path.to_owned(), sha256, samples, segments, repairs, ignored_columns: Vec::new() }
+    }
+
+    /// The law that a diagnosis ends with, of a model whose friction follows the pressure, where it is held in what is fitted.
+    fn law(held_out_follows: bool) -> Standstill {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../bin/pam-predict/tests/data/model.json");
+        let (mut model, _) = ModelArtifact::read(&path).expect("a model of the nominal muscle");
+        model.direction.standstill = Standstill::AT_ONCE;
+        let friction = model.parameters.iter_mut().find(|entry| entry.name == "rubber_friction").expect("a friction");
+        friction.value = 1.2e-3;
+        let prepared = |path, follows| {
+            let gated = gate(vec![recorded(path, &model, follows)]).expect("a recording");
+            direct(gated, model.direction, model.form).expect("directions")
+        };
+        let (estimation, holdout) = (prepared("fitted.csv", false), prepared("held.csv", held_out_follows));
+        let limits = Limits { confirmed: true, ..Limits::of_test(0, 0.3) };
+        let track = Track::of(&estimation, model.direction, &model.force_model()).expect("a track");
+        let mut recordings = Recordings { estimation, holdout, rig: Vec::new() };
+        recordings.under_best_law(&mut model, &limits, track, &|| {}).expect("a search");
+        model.direction.standstill
+    }
+
+    #[test]
+    fn a_law_of_standstill_that_fits_better_is_taken_where_hold_outs_are_followed_no_worse() {
+        assert_eq!(law(false), Standstill::Held);
+        assert_eq!(law(true), Standstill::AT_ONCE);
+    }
+}
