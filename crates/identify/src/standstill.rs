@@ -23,6 +23,11 @@ const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 /// Shares of the friction that the pressure may bring about, less than all of it.
 const SHARES: [f64; 4] = [0.8, 0.6, 0.4, 0.2];
 
+/// Those of them that are looked at first, and the pressures.
+const FEW: [f64; 2] = [0.8, 0.4];
+/// See [`FEW`].
+const FEW_PA: [f64; 3] = [1e4, 4e4, 1.6e5];
+
 /// Travels over which friction may keep its sign after a reversal, and in which it may turn over after that, in m. What takes
 /// longer is pre-sliding, an effect with a name.
 const HELD_M: [f64; 6] = [0.0, 1e-5, 1.5e-5, 2e-5, 3e-5, 4.5e-5];
@@ -82,9 +87,14 @@ pub fn judge(
         };
         rank(left).total_cmp(&rank(right))
     });
-    let partly = OVER_PA.iter().skip(1).flat_map(|&over_pa| SHARES.map(|share| Standstill::Slides { over_pa, share }));
-    let best = least(fitted(partly.collect(), None)?);
+    let partly = |over_pa: &[f64], shares: &[f64]| -> Result<Option<StandstillFit>, IdentifyError> {
+        let law = |&over_pa: &f64| shares.iter().map(move |&share| Standstill::Slides { over_pa, share });
+        Ok(least(fitted(over_pa.iter().flat_map(law).collect(), None)?))
+    };
     let most = (1.0 - PARTLY).sqrt();
+    // Where no few of them gain anything near it, none of the others is looked at.
+    let promises = partly(&FEW_PA, &FEW)?.is_some_and(|law| law.rmse_n < (1.0 - CLEARLY).sqrt() * judged[0].rmse_n);
+    let best = if promises { partly(&OVER_PA[1..], &SHARES)? } else { None };
     if let Some(best) = best.filter(|best| best.rmse_n < most * judged[0].rmse_n) {
         let late: Result<Vec<Vec<f64>>, IdentifyError> =
             recordings.iter().map(|prepared| changes_pa(prepared)).collect();
