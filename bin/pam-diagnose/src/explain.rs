@@ -63,7 +63,7 @@ fn text(page: &Page) -> String {
     }
     for confusion in page.confused_with {
         let words =
-            format!("{}: {}. Distinguished by {}.", confusion.id, ended(confusion.because), ended(confusion.test));
+            format!("{}: {}. To tell them apart: {}.", confusion.id, ended(confusion.because), ended(confusion.test));
         text.push_str(&wrapped(&words, "  "));
         text.push('\n');
     }

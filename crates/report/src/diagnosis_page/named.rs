@@ -144,7 +144,7 @@ fn alternative(alternative: &PageAlternative) -> String {
         html.push_str(&format!("<br>\nAlike because {}.", escaped(because.trim_end_matches('.'))));
     }
     if !test.is_empty() {
-        html.push_str(&format!(" Distinguished by {}.", escaped(test.trim_end_matches('.'))));
+        html.push_str(&format!(" To tell them apart: {}.", escaped(test.trim_end_matches('.'))));
     }
     html.push_str("</p>\n");
     html
