@@ -73,7 +73,16 @@ pub fn judge(
     let fitted = |laws: Vec<Standstill>, late: Option<&[Vec<f64>]>| -> Result<Vec<StandstillFit>, IdentifyError> {
         let fitted = laws.into_par_iter().map(|standstill| {
             let thresholds = Thresholds { standstill, ..thresholds };
-            let left = mean_square(recordings, columns, thresholds, Counts::Settled(stride), late)?;
+            let found: Result<Vec<Direction>, IdentifyError> = recordings
+                .iter()
+                .map(|prepared| {
+                    Direction::of(&prepared.recording, thresholds, Driver::Motion)
+                        .map_err(|reason| unreadable(prepared, reason))
+                })
+                .collect();
+            let found = found?;
+            let directions: Vec<&Direction> = found.iter().collect();
+            let left = mean_square(recordings, columns, &directions, Counts::Settled(stride), late)?;
             Ok(StandstillFit { standstill, rmse_n: left.sqrt() })
         });
         fitted.collect()
@@ -118,9 +127,7 @@ fn changes_pa(prepared: &Prepared) -> Result<Vec<f64>, IdentifyError> {
     let n_rows = samples.n_rows();
     let mut pressure_pa = Vec::with_capacity(n_rows);
     while pressure_pa.len() < n_rows {
-        let chunk = samples
-            .chunk(pressure_pa.len() / CHUNK_ROWS)
-            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+        let chunk = samples.chunk(pressure_pa.len() / CHUNK_ROWS).map_err(|reason| unreadable(prepared, reason))?;
         pressure_pa.extend_from_slice(chunk.pressure_pa());
     }
     let half = ((0.5 * LATE_S / prepared.quality.period_s).round() as usize).max(1);
@@ -151,16 +158,31 @@ pub fn turning(
 ) -> Result<Thresholds, IdentifyError> {
     let first = TURNING_ROWS / recordings.len().max(1);
     let finest = (finest_m < FINER * thresholds.length_m).then_some(finest_m);
-    let travels: Vec<Thresholds> = std::iter::once(thresholds.length_m)
-        .chain(finest)
-        .flat_map(|length_m| HELD_M.map(|held_m| Thresholds { length_m, held_m, ..thresholds }))
-        .flat_map(|thresholds| TURNS_M.map(|turn_m| Thresholds { turn_m, ..thresholds }))
-        .collect();
-    let judged: Result<Vec<(f64, Thresholds)>, IdentifyError> = travels
-        .into_par_iter()
-        .map(|travels| Ok((mean_square(recordings, columns, travels, Counts::First(first), None)?, travels)))
-        .collect();
-    let judged = judged?;
+    let travels: Vec<(f64, f64)> = HELD_M.iter().flat_map(|&held_m| TURNS_M.map(|turn_m| (held_m, turn_m))).collect();
+    let mut judged = Vec::new();
+    for length_m in std::iter::once(thresholds.length_m).chain(finest) {
+        let thresholds = Thresholds { length_m, ..thresholds };
+        let counts = Counts::First(first);
+        let found: Result<Vec<Vec<Direction>>, IdentifyError> = recordings
+            .par_iter()
+            .map(|prepared| {
+                let n_rows = counts.rows(prepared);
+                Direction::of_first_turning(n_rows, &prepared.recording, thresholds, Driver::Motion, &travels)
+                    .map_err(|reason| unreadable(prepared, reason))
+            })
+            .collect();
+        let found = found?;
+        let left: Result<Vec<(f64, Thresholds)>, IdentifyError> = travels
+            .par_iter()
+            .enumerate()
+            .map(|(index, &(held_m, turn_m))| {
+                let directions: Vec<&Direction> = found.iter().map(|directions| &directions[index]).collect();
+                let left = mean_square(recordings, columns, &directions, counts, None)?;
+                Ok((left, Thresholds { held_m, turn_m, ..thresholds }))
+            })
+            .collect();
+        judged.extend(left?);
+    }
     let most = (1.0 - HARDLY) * judged[0].0;
     let best = judged.into_iter().filter(|(left, _)| *left < most).min_by(|one, other| one.0.total_cmp(&other.0));
     Ok(best.map_or(thresholds, |(_, travels)| travels))
@@ -181,20 +203,35 @@ enum Counts {
     First(usize),
 }
 
-/// What the columns leave of the force under `thresholds`, in N²; beside a pressure that is `late`, of which that is the change
-/// around every row of every recording, where it is given.
+impl Counts {
+    /// Rows of a recording that are looked at, from its first on.
+    fn rows(self, prepared: &Prepared) -> usize {
+        let n_rows = prepared.recording.samples.n_rows();
+        match self {
+            Self::Settled(_) => n_rows,
+            Self::First(first) => first.min(n_rows),
+        }
+    }
+}
+
+fn unreadable(prepared: &Prepared, reason: io::Error) -> IdentifyError {
+    IdentifyError::Samples { path: prepared.recording.path.clone(), reason }
+}
+
+/// What the columns leave of the force with the `directions` of the recordings, in N²; beside a pressure that is `late`, of which
+/// that is the change around every row of every recording, where it is given.
 fn mean_square(
     recordings: &[&Prepared],
     columns: &ForceColumns,
-    thresholds: Thresholds,
+    directions: &[&Direction],
     counts: Counts,
     late: Option<&[Vec<f64>]>,
 ) -> Result<f64, IdentifyError> {
     let mut total = Summary::new(N_COLUMNS + usize::from(late.is_some()));
-    for (index, prepared) in recordings.iter().enumerate() {
+    for (index, (prepared, direction)) in recordings.iter().zip(directions).enumerate() {
         let change_pa = late.map(|late| late[index].as_slice());
-        let part = condensed(prepared, columns, thresholds, counts, change_pa)
-            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+        let part = condensed(prepared, columns, direction, counts, change_pa)
+            .map_err(|reason| unreadable(prepared, reason))?;
         total.merge(&part);
     }
     Ok(total.residual_floor_square_sum() / total.n_rows().max(1) as f64)
@@ -203,17 +240,16 @@ fn mean_square(
 fn condensed(
     prepared: &Prepared,
     columns: &ForceColumns,
-    thresholds: Thresholds,
+    direction: &Direction,
     counts: Counts,
     change_pa: Option<&[f64]>,
 ) -> io::Result<Summary> {
     debug_assert_eq!(columns.form(), Form::Corrected);
-    let n_rows = prepared.recording.samples.n_rows();
-    let (stride, n_rows) = match counts {
-        Counts::Settled(stride) => (stride, n_rows),
-        Counts::First(first) => (1, first.min(n_rows)),
+    let n_rows = counts.rows(prepared);
+    let stride = match counts {
+        Counts::Settled(stride) => stride,
+        Counts::First(_) => 1,
     };
-    let direction = Direction::of_first(n_rows, &prepared.recording, thresholds, Driver::Motion)?;
     let mut left_out = vec![false; n_rows];
     for rows in prepared.direction.left_out() {
         left_out[rows.start.min(n_rows)..rows.end.min(n_rows)].fill(true);
@@ -232,7 +268,7 @@ fn condensed(
         while row < n_rows.min(chunk.first_row() + chunk.n_rows()) {
             let here = row - chunk.first_row();
             let settled = |direction: &Direction| direction.is_settled(row) || !direction.is_known(row);
-            let counts = matches!(counts, Counts::First(_)) || settled(&direction) && settled(&prepared.direction);
+            let counts = matches!(counts, Counts::First(_)) || settled(direction) && settled(&prepared.direction);
             if counts && !left_out[row] {
                 let length_m = chunk.length_m()[here];
                 let values = columns.row(chunk.pressure_pa()[here], length_m, direction.sign(row));

@@ -35,7 +35,7 @@ mod rest;
 mod states;
 mod turn;
 
-use states::{Bounds, State, moving_average, slide, states_of};
+use states::{Bounds, State, Unturned, moving_average, slide};
 
 pub use rest::STANDSTILL_S;
 pub use states::WINDOW_S;
@@ -152,33 +152,65 @@ impl Direction {
     /// # Errors
     /// Where the samples cannot be read back.
     pub fn of_first(n_rows: usize, recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
-        let mut all = Self {
+        let travels = [(thresholds.held_m, thresholds.turn_m)];
+        Ok(Self::of_first_turning(n_rows, recording, thresholds, driver, &travels)?.remove(0))
+    }
+
+    /// The same with each of the `travels` (`held_m`, `turn_m`) in place of those of `thresholds`. All else is found once.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of_first_turning(
+        n_rows: usize,
+        recording: &Recording,
+        thresholds: Thresholds,
+        driver: Driver,
+        travels: &[(f64, f64)],
+    ) -> io::Result<Vec<Self>> {
+        let turns = travels.iter().any(|(held_m, turn_m)| *held_m > 0.0 || *turn_m > 0.0);
+        let empty = || Self {
             states: Vec::with_capacity(n_rows),
             settled: Vec::with_capacity(n_rows),
             known: Vec::with_capacity(n_rows),
             left_out: Vec::new(),
         };
+        let mut all: Vec<Self> = travels.iter().map(|_| empty()).collect();
         for segment in &recording.segments {
             let segment = segment.start.min(n_rows)..segment.end.min(n_rows);
-            let mut carried = Bounds::UNKNOWN;
+            let mut carried = vec![Bounds::UNKNOWN; travels.len()];
             for start in segment.clone().step_by(STRETCH_ROWS) {
                 let end = (start + STRETCH_ROWS).min(segment.end);
                 let (time_s, pressure_pa, length_m) = rows(recording, &(start..end))?;
-                let stretch = states_of(&time_s, &pressure_pa, &length_m, thresholds, driver, carried);
-                carried = stretch.last().map_or(carried, |state| state.bounds);
-                for State { bounds, is_settled } in stretch {
-                    all.states.push((STEPS * bounds.middle()).round() as i8);
-                    all.settled.push(is_settled && bounds.is_known());
-                    all.known.push(bounds.is_known());
+                let unturned =
+                    |before| Unturned::of(&time_s, &pressure_pa, &length_m, thresholds, driver, before, turns);
+                // What came before this stretch may have turned over within one travel and not within another.
+                let mut begun: Option<(Bounds, Unturned)> = None;
+                for ((direction, before), &(held_m, turn_m)) in all.iter_mut().zip(&mut carried).zip(travels) {
+                    let found = match begun.take() {
+                        Some((bounds, found)) if bounds == *before => found,
+                        _ => unturned(*before),
+                    };
+                    let stretch = found.turned(Thresholds { held_m, turn_m, ..thresholds });
+                    begun = Some((*before, found));
+                    *before = stretch.last().map_or(*before, |state| state.bounds);
+                    direction.extend(&stretch);
                 }
             }
         }
         // What nothing moves from beginning to end counts without friction, or nothing would.
-        if !all.known.contains(&true) {
-            all.known.fill(true);
-            all.settled.fill(true);
+        for direction in all.iter_mut().filter(|direction| !direction.known.contains(&true)) {
+            direction.known.fill(true);
+            direction.settled.fill(true);
         }
         Ok(all)
+    }
+
+    fn extend(&mut self, stretch: &[State]) {
+        for State { bounds, is_settled } in stretch {
+            self.states.push((STEPS * bounds.middle()).round() as i8);
+            self.settled.push(*is_settled && bounds.is_known());
+            self.known.push(bounds.is_known());
+        }
     }
 
     /// Direction of a row, in [-1, 1]; 0 where it is not known.

@@ -56,69 +56,93 @@ pub(super) struct State {
     pub(super) is_settled: bool,
 }
 
-/// States of consecutive rows without a gap; `carried` is the one before them.
-pub(super) fn states_of(
-    time_s: &[f64],
-    pressure_pa: &[f64],
-    length_m: &[f64],
-    thresholds: Thresholds,
-    driver: Driver,
+/// States of consecutive rows without a gap before friction takes its travels to turn over, and what says how it does.
+pub(super) struct Unturned {
+    states: Vec<State>,
+    /// The state before them.
     carried: Bounds,
-) -> Vec<State> {
-    let n = time_s.len();
-    if n < 2 {
-        return vec![State { bounds: carried, is_settled: true }; n];
-    }
-    let period_s = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
-    let half = ((0.5 * WINDOW_S / period_s).round() as usize).clamp(2, 50);
-    let mut marks = vec![0; n];
-    if driver == Driver::Pressure {
-        let smooth = moving_average(pressure_pa, half);
-        play(&smooth, pressure_pa, thresholds.pressure_pa, half, carried.sign(), &mut marks);
-        return from_marks(&marks, carried);
-    }
-    let shortening: Vec<f64> = length_m.iter().map(|length| -length).collect();
-    let contraction = moving_average(&shortening, half);
-    play(&contraction, &shortening, thresholds.length_m, half, carried.sign(), &mut marks);
-    let pressure = moving_average(pressure_pa, half);
-    let resting = standstills(time_s, &contraction, thresholds.length_m);
-    // Deviation of an average of the length at rest.
-    let noise_m = NOISE * thresholds.length_m / ((2 * half + 1) as f64).sqrt();
-    let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
-    let pushed: Vec<Range<usize>> = (0..resting.len()).filter_map(push).collect();
-    let follows = |over_pa: f64, share: f64| over_pa <= 2.0 * thresholds.pressure_pa && share >= 1.0;
-    if let Standstill::Slides { over_pa, share } = thresholds.standstill
-        && follows(over_pa, share)
-    {
-        for still in &pushed {
-            let rest = resting.iter().find(|rest| rest.contains(&still.start)).unwrap_or(still);
-            let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried.sign() };
-            let (smooth, raw) = (&pressure[still.clone()], &pressure_pa[still.clone()]);
-            marks[still.clone()].fill(0);
-            play(smooth, raw, thresholds.pressure_pa, half, before, &mut marks[still.clone()]);
-            keep(still.end, rest.end + 2 * half, before, &mut marks);
+    /// Where the pressure moves friction while the length rests.
+    pushed: Vec<Range<usize>>,
+    /// What friction turns over along, in m; empty where it takes no travel to.
+    path: Vec<f64>,
+    /// Rows within which a turn lies.
+    reach: usize,
+}
+
+impl Unturned {
+    /// Of rows after the state `carried`; `turns` where friction will take any travel to turn over.
+    pub(super) fn of(
+        time_s: &[f64],
+        pressure_pa: &[f64],
+        length_m: &[f64],
+        thresholds: Thresholds,
+        driver: Driver,
+        carried: Bounds,
+        turns: bool,
+    ) -> Self {
+        let at_once = |states: Vec<State>| Self { states, carried, pushed: Vec::new(), path: Vec::new(), reach: 0 };
+        let n = time_s.len();
+        if n < 2 {
+            return at_once(vec![State { bounds: carried, is_settled: true }; n]);
         }
-    }
-    let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
-    slow.doubt(&resting, thresholds, &mut marks);
-    let mut states = from_marks(&marks, carried);
-    if let Standstill::Slides { over_pa, share } = thresholds.standstill
-        && !follows(over_pa, share)
-    {
-        for still in &pushed {
-            let before = if still.start > 0 { states[still.start - 1].bounds } else { carried };
-            slide(&pressure[still.clone()], over_pa, share, before, &mut states[still.clone()]);
-            let after = states[still.end - 1];
-            let unmoved = marks[still.end..].iter().take_while(|mark| **mark == 0).count();
-            states[still.end..still.end + unmoved].fill(after);
+        let period_s = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
+        let half = ((0.5 * WINDOW_S / period_s).round() as usize).clamp(2, 50);
+        let mut marks = vec![0; n];
+        if driver == Driver::Pressure {
+            let smooth = moving_average(pressure_pa, half);
+            play(&smooth, pressure_pa, thresholds.pressure_pa, half, carried.sign(), &mut marks);
+            return at_once(from_marks(&marks, carried));
         }
+        let shortening: Vec<f64> = length_m.iter().map(|length| -length).collect();
+        let contraction = moving_average(&shortening, half);
+        play(&contraction, &shortening, thresholds.length_m, half, carried.sign(), &mut marks);
+        let pressure = moving_average(pressure_pa, half);
+        let resting = standstills(time_s, &contraction, thresholds.length_m);
+        // Deviation of an average of the length at rest.
+        let noise_m = NOISE * thresholds.length_m / ((2 * half + 1) as f64).sqrt();
+        let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
+        let pushed: Vec<Range<usize>> = (0..resting.len()).filter_map(push).collect();
+        let follows = |over_pa: f64, share: f64| over_pa <= 2.0 * thresholds.pressure_pa && share >= 1.0;
+        if let Standstill::Slides { over_pa, share } = thresholds.standstill
+            && follows(over_pa, share)
+        {
+            for still in &pushed {
+                let rest = resting.iter().find(|rest| rest.contains(&still.start)).unwrap_or(still);
+                let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried.sign() };
+                let (smooth, raw) = (&pressure[still.clone()], &pressure_pa[still.clone()]);
+                marks[still.clone()].fill(0);
+                play(smooth, raw, thresholds.pressure_pa, half, before, &mut marks[still.clone()]);
+                keep(still.end, rest.end + 2 * half, before, &mut marks);
+            }
+        }
+        let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
+        slow.doubt(&resting, thresholds, &mut marks);
+        let mut states = from_marks(&marks, carried);
+        if let Standstill::Slides { over_pa, share } = thresholds.standstill
+            && !follows(over_pa, share)
+        {
+            for still in &pushed {
+                let before = if still.start > 0 { states[still.start - 1].bounds } else { carried };
+                slide(&pressure[still.clone()], over_pa, share, before, &mut states[still.clone()]);
+                let after = states[still.end - 1];
+                let unmoved = marks[still.end..].iter().take_while(|mark| **mark == 0).count();
+                states[still.end..still.end + unmoved].fill(after);
+            }
+        }
+        let path = if turns { path(time_s, period_s, &shortening, thresholds) } else { Vec::new() };
+        let reach = slow.long;
+        let pushed = if thresholds.standstill == Standstill::Held { Vec::new() } else { pushed };
+        Self { states, carried, pushed, path, reach }
     }
-    if thresholds.held_m > 0.0 || thresholds.turn_m > 0.0 {
-        let pushed = if thresholds.standstill == Standstill::Held { &[][..] } else { &pushed };
-        let path = path(time_s, period_s, &shortening, thresholds);
-        turn_over(&path, thresholds, slow.long, carried, pushed, &mut states);
+
+    /// The states where friction turns over within the travels of `thresholds`.
+    pub(super) fn turned(&self, thresholds: Thresholds) -> Vec<State> {
+        let mut states = self.states.clone();
+        if (thresholds.held_m > 0.0 || thresholds.turn_m > 0.0) && !self.path.is_empty() {
+            turn_over(&self.path, thresholds, self.reach, self.carried, &self.pushed, &mut states);
+        }
+        states
     }
-    states
 }
 
 /// Lets what the pressure has made of friction before row `from` last until the length turns, or moves at all; `before` is the
@@ -388,6 +412,17 @@ fn play(smooth: &[f64], raw: &[f64], threshold: f64, half: usize, carried: i8, m
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn states_of(
+        time_s: &[f64],
+        pressure_pa: &[f64],
+        length_m: &[f64],
+        thresholds: Thresholds,
+        driver: Driver,
+        carried: Bounds,
+    ) -> Vec<State> {
+        Unturned::of(time_s, pressure_pa, length_m, thresholds, driver, carried, true).turned(thresholds)
+    }
     use rand::SeedableRng;
     use rand_distr::{Distribution, Normal};
 
