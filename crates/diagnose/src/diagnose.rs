@@ -200,6 +200,9 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
     let nuisance = found.nuisance.clone();
     let setting = question.setting(&track, &nuisance);
+    if knocks.is_none() && stand_ins::let_go_of_ends(&setting, &mut found) {
+        sizes = Sizes::of(&found, &question.limits);
+    }
     let is_doubtful =
         verdict(&found, &sizes, false) == Verdict::Unexplained || stand_ins::leaves_too_much(&found, &sizes);
     if knocks.is_none() && is_doubtful {

@@ -7,6 +7,7 @@ use crate::hypothesis::CandidateEffect;
 use crate::search::{Found, Judged, Limits, judged};
 use crate::state::Setting;
 use crate::structure::{Feature, ProjectedResidual};
+use crate::trial::wants_another;
 use crate::verdict::Sizes;
 
 /// Share of the whole mismatch that structure over one coordinate must hold before it is asked what stands in for it.
@@ -106,6 +107,21 @@ pub(crate) fn let_go(
         }
     }
     Sizes::of(found, limits)
+}
+
+/// Lets go of every effect of `found` whose shape lies where nothing published is. Whether there was any. Of the 14 such names that
+/// this was found by, among 300, ten were wrong.
+pub(crate) fn let_go_of_ends(setting: &Setting<'_>, found: &mut Found) -> bool {
+    let mut any = false;
+    for index in (0..found.best.state.guesses.len()).rev() {
+        let guess = &found.best.state.guesses[index];
+        let id = guess.id();
+        if wants_another(guess.effect, &guess.shape) && found.let_go(setting, index) {
+            found.stand_ins.push(id);
+            any = true;
+        }
+    }
+    any
 }
 
 #[cfg(test)]

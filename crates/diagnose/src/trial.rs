@@ -42,13 +42,30 @@ const DEGENERATE_CHARGE: f64 = 0.2;
 
 /// Whether a shape is at an end of its range that says more than how: zero, and the ends that an effect means, say no more.
 pub(crate) fn is_degenerate(effect: &dyn Effect, shape: &[f64]) -> bool {
-    let at_an_end = |(index, (parameter, &value)): (usize, (&Shape, &f64))| {
-        let (low, high) = parameter.range;
-        let near = 1e-3 * (high - low);
-        let is_meant = |end: f64| end == 0.0 || effect.may_end(index, end);
-        value <= low + near.min(0.05 * low.abs()) && !is_meant(low) || value >= high - near && !is_meant(high)
-    };
-    effect.kind() != Kind::Event && effect.shape().iter().zip(shape).enumerate().any(at_an_end)
+    effect
+        .shape()
+        .iter()
+        .zip(shape)
+        .enumerate()
+        .any(|(index, (parameter, &value))| is_at_end(effect, index, parameter, value))
+}
+
+fn is_at_end(effect: &dyn Effect, index: usize, parameter: &Shape, value: f64) -> bool {
+    let (low, high) = parameter.range;
+    let near = 1e-3 * (high - low);
+    let is_meant = |end: f64| end == 0.0 || effect.may_end(index, end);
+    let at_end = value <= low + near.min(0.05 * low.abs()) && !is_meant(low) || value >= high - near && !is_meant(high);
+    effect.kind() != Kind::Event && at_end
+}
+
+/// Whether a shape is at an end of its range that is no share of a whole: the data want a length, a time or a speed that nothing
+/// published has, of something else that looks like the effect from afar.
+pub(crate) fn wants_another(effect: &dyn Effect, shape: &[f64]) -> bool {
+    let parameters = effect.shape().iter().zip(shape).enumerate();
+    let is_share = |parameter: &Shape| parameter.range == (0.0, 1.0);
+    parameters
+        .filter(|(_, (parameter, _))| !is_share(parameter))
+        .any(|(index, (parameter, &value))| is_at_end(effect, index, parameter, value))
 }
 
 /// Share of its evidence that an effect loses for every parameter beyond the first: of two that explain as much, the simpler
@@ -285,5 +302,15 @@ mod tests {
         assert!(!is_degenerate(of("stribeck"), &[5e-3, 0.5, 0.0]));
         assert!(is_degenerate(of("stribeck"), &[5e-2, 1.0, 0.0]));
         assert!(!is_degenerate(of("force-drift"), &[4e3]));
+        assert!(is_degenerate(of("force-drift"), &[20.0]));
+    }
+
+    #[test]
+    fn a_shape_beyond_what_is_published_is_something_else_and_a_whole_share_is_not() {
+        assert!(wants_another(of("rubber-hysteresis"), &[1e-4]));
+        assert!(wants_another(of("rate-dependent-hysteresis"), &[1e-5]));
+        assert!(!wants_another(of("rubber-hysteresis"), &[1e-3]));
+        assert!(!wants_another(of("pressure-creep"), &[6.0, 1.0]));
+        assert!(!wants_another(of("stribeck"), &[5e-3, 2.5, 200.0]));
     }
 }
