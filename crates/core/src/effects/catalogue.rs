@@ -182,6 +182,7 @@ mod tests {
             ("Hz", "_hz"),
             ("1/N", "_per_n"),
             ("1/K", "_per_kelvin"),
+            ("1/s", "_per_s"),
         ];
         for effect in CATALOGUE {
             let id = effect.page().id;
