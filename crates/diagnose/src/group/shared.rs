@@ -7,6 +7,9 @@ use super::member::{Estimate, Member, Worth};
 use crate::hypothesis::CandidateEffect;
 use crate::trial::step_around;
 
+/// Shapes of the grid that are refined, the best of those whose first differs: where friction turns over with a channel that is late, there is more than one
+/// delay that is better than its neighbors.
+const STARTS: usize = 2;
 /// Rounds in which shapes are refined, at half the distance each time.
 const ROUNDS: usize = 6;
 /// Steps to one side in a round, at most.
@@ -46,29 +49,44 @@ pub(super) fn best(members: &[&Member<'_>], effect: &'static dyn Effect) -> Opti
             CandidateEffect::signs(effect).iter().map(guess)
         })
         .collect();
-    let tried = guesses.into_par_iter().filter_map(|guess| Some((together(members, &guess)?, guess)));
-    let (gained, guess) = tried.max_by(|left, right| left.0.total_cmp(&right.0))?;
-    let guess = refined(members, guess, gained);
+    let tried = guesses.into_par_iter().filter_map(|guess| Some((follows(members, &guess, true)?, guess)));
+    let mut tried: Vec<(f64, CandidateEffect)> = tried.collect();
+    tried.sort_by(|left, right| right.0.total_cmp(&left.0));
+    // Neighbors of one another that differ in the second shape alone lead to one place.
+    let mut firsts: Vec<Option<f64>> = Vec::new();
+    tried.retain(|(_, guess)| {
+        let first = guess.shape.first().copied();
+        let is_new = !firsts.contains(&first);
+        firsts.push(first);
+        is_new
+    });
+    tried.truncate(STARTS);
+    let refined = tried.into_par_iter().filter_map(|(followed, guess)| {
+        let guess = refined(members, guess, followed);
+        Some((follows(members, &guess, true)?, guess))
+    });
+    let (_, guess) = refined.max_by(|left, right| left.0.total_cmp(&right.0))?;
     let each = members.par_iter().map(|member| member.worth(&guess, false)).collect::<Option<Vec<_>>>()?;
     Some(Shared { guess, each })
 }
 
-/// What `guess` gains in all `members`, on the instants that a search for a shape looks at.
-fn together(members: &[&Member<'_>], guess: &CandidateEffect) -> Option<f64> {
-    members.par_iter().map(|member| Some(member.worth(guess, true)?.log_ratio)).sum()
+/// How closely all `members` are followed with `guess`, the closer the more: the logarithm of what is left, so that every muscle counts
+/// alike. Evidence would not do: what is left below the form of eq. 11 gains nothing there, and a value half as large as the right one
+/// may already leave no more.
+fn follows(members: &[&Member<'_>], guess: &CandidateEffect, thinly: bool) -> Option<f64> {
+    members.par_iter().map(|member| Some(-member.worth(guess, thinly)?.with.max(f64::MIN_POSITIVE).ln())).sum()
 }
 
-/// `guess`, which gains `gained`, with better values of its shapes.
-fn refined(members: &[&Member<'_>], guess: CandidateEffect, gained: f64) -> CandidateEffect {
-    descended(guess, gained, 1.0, ROUNDS, &|guess| together(members, guess))
+/// `guess`, with which `followed` is how closely, with better values of its shapes, on the instants that a search for a shape looks at.
+fn refined(members: &[&Member<'_>], guess: CandidateEffect, followed: f64) -> CandidateEffect {
+    descended(guess, followed, 1.0, ROUNDS, &|guess| follows(members, guess, true))
 }
 
 /// The same on all instants, from near by: `guess` is good on those that a search for a shape looks at.
 pub(super) fn polished(members: &[&Member<'_>], guess: CandidateEffect) -> CandidateEffect {
-    let gains =
-        |guess: &CandidateEffect| members.par_iter().map(|member| Some(member.worth(guess, false)?.log_ratio)).sum();
-    let Some(gained) = gains(&guess) else { return guess };
-    descended(guess, gained, POLISH, POLISH_ROUNDS, &gains)
+    let gains = |guess: &CandidateEffect| follows(members, guess, false);
+    let Some(followed) = gains(&guess) else { return guess };
+    descended(guess, followed, POLISH, POLISH_ROUNDS, &gains)
 }
 
 /// `guess`, which gains `gained`, with shapes that gain most by `gains`: steps to all sides, one shape or two at a time, since
@@ -87,21 +105,21 @@ fn descended(
     let sides = sides(shapes.len());
     let mut best = (gained, guess);
     for _ in 0..rounds {
-        for side in &sides {
-            let steps = alike(shapes, &steps, side);
-            for _ in 0..MOST_STEPS {
+        for _ in 0..MOST_STEPS {
+            // The steepest way, as a first one that only rises may lead to a lesser top.
+            let stepped = sides.iter().filter_map(|side| {
                 let mut tried = best.1.clone();
-                for (index, parameter) in shapes.iter().enumerate() {
-                    let (low, high) = parameter.range;
-                    tried.shape[index] = (tried.shape[index] + side[index] * steps[index]).clamp(low, high);
+                for ((value, parameter), (way, step)) in
+                    tried.shape.iter_mut().zip(shapes).zip(side.iter().zip(alike(shapes, &steps, side)))
+                {
+                    *value = (*value + way * step).clamp(parameter.range.0, parameter.range.1);
                 }
-                if tried.shape == best.1.shape {
-                    break;
-                }
-                match gains(&tried).filter(|gained| *gained > best.0) {
-                    Some(gained) => best = (gained, tried),
-                    None => break,
-                }
+                let gained = if tried.shape == best.1.shape { None } else { gains(&tried) };
+                Some((gained?, tried))
+            });
+            match stepped.max_by(|left, right| left.0.total_cmp(&right.0)).filter(|(gained, _)| *gained > best.0) {
+                Some(higher) => best = higher,
+                None => break,
             }
         }
         steps.iter_mut().for_each(|step| *step *= 0.5);
@@ -143,8 +161,8 @@ pub(super) fn spread(members: &[&Member<'_>], guess: &CandidateEffect) -> Vec<f6
     let left_out = |index: usize| {
         let others: Vec<&Member<'_>> =
             members.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, member)| *member).collect();
-        let gained = together(&others, guess)?;
-        Some(refined(&others, guess.clone(), gained).shape)
+        let followed = follows(&others, guess, true)?;
+        Some(refined(&others, guess.clone(), followed).shape)
     };
     let shapes: Vec<Vec<f64>> = (0..members.len()).filter_map(left_out).collect();
     let n = shapes.len().max(1) as f64;
