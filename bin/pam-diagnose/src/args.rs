@@ -53,8 +53,8 @@ pub(crate) struct Args {
     )]
     pub(crate) since: Option<PathBuf>,
 
-    /// Diagnose several muscles of one rig together instead: a file (TOML) with a name, a model, logs and holdout for each
-    /// [[muscle]]. What the rig does to all of them is shared and adds up; what a muscle does is its own.
+    /// Diagnose several muscles of one rig together instead: a file (TOML) with a name, a model, logs and holdout in a table
+    /// for each muscle. What the rig does to all of them is shared and adds up; what a muscle does is its own.
     #[arg(
         long,
         value_name = "GROUP.toml",

@@ -1,6 +1,6 @@
 //! A model and recordings in; what physics was left out of the model, where, and what it buys, out.
 //!
-//! In reading order: [`track`] is the recordings on a common grid, [`sheet`] what a [`hypothesis`] makes of it, [`normal`]
+//! In reading order: [`track`] is the recordings on a common grid, [`design_matrix`] what a [`hypothesis`] makes of it, [`normal`]
 //! and [`joint`] fit base and effects together and judge them on held-out blocks. [`isolability`] says what the recordings
 //! could tell apart at all, [`next_experiment`] which one would tell more.
 
