@@ -15,8 +15,9 @@ pub(super) fn statement(rig: &[RigEffect], muscles: &[GroupMuscle], group: &Grou
     for effect in rig {
         sentences.push(of_the_rig(effect));
     }
-    for id in &group.denied {
-        sentences.push(format!("Held-out recordings do not show {id}, which would explain the fitted ones."));
+    if !group.denied.is_empty() {
+        let ids = group.denied.join(" or ");
+        sentences.push(format!("Held-out recordings do not show {ids}, which would explain the fitted ones."));
     }
     for id in &group.apart {
         sentences.push(format!("What looks like {id} has another value in every muscle: it is not of one rig."));
