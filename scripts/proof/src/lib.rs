@@ -11,13 +11,12 @@
 //! (the bench), [`calibrate`] (how strong it is), [`seal`], [`folder`] (files of a case), [`programs`] (the diagnosis as
 //! subprocesses), [`heldout`] (error against the noise-free truth), [`score`], [`criteria`] and [`confusion`] (all
 //! cases together), [`results`] (what is written), [`run`] (all of it in order); [`real`] is the proof on real muscles;
-//! [`worlds_score`] scores cases of the independent bench.
+//! [`worlds`] scores cases of the independent bench.
 
 pub mod calibrate;
 pub mod case;
 pub mod confusion;
 pub mod criteria;
-pub mod discovered;
 pub mod draw;
 pub mod folder;
 pub mod heldout;
@@ -31,4 +30,4 @@ pub mod score;
 pub mod seal;
 pub mod sets;
 pub mod statistics;
-pub mod worlds_score;
+pub mod worlds;

@@ -7,6 +7,8 @@ use anyhow::{Context as _, Result, bail, ensure};
 use pam_core::artifact::{DiagnosisArtifact, ModelArtifact};
 use pam_report::Table;
 
+use crate::worlds::ceiling::{Beside, trees_n};
+
 /// A muscle with what is to be reached on its held-out recordings, in N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RealMuscle {
@@ -96,7 +98,7 @@ pub fn prove(muscle: RealMuscle, recordings: &Path, bin: &Path, root: &Path) -> 
         diagnosed_n: held_out_n(augmented)?,
         statement: diagnosis.statement,
         effects: diagnosis.effects.into_iter().map(|effect| effect.id).collect(),
-        trees_n: trees_n(root, &fitted, &held),
+        trees_n: trees_n(&root.join("scripts/proof/boosted-trees.py"), &fitted, &held, Beside::Nothing),
     })
 }
 
@@ -108,14 +110,6 @@ fn run(command: &mut Command) -> Result<()> {
         bail!("{name} ended with {}: {}", output.status, said.lines().last().unwrap_or("it said nothing"));
     }
     Ok(())
-}
-
-/// Held-out RMSE of boosted trees on lagged signals; none where they cannot be run.
-fn trees_n(root: &Path, fitted: &[PathBuf], held: &[PathBuf]) -> Option<f64> {
-    let mut command = Command::new("python3");
-    command.arg(root.join("scripts/proof/boosted-trees.py")).args(fitted).arg("--holdout").args(held);
-    let output = command.output().ok().filter(|output| output.status.success())?;
-    String::from_utf8(output.stdout).ok()?.trim().parse().ok()
 }
 
 /// The table of both muscles.

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::discovered::Discovered;
+use super::discovered::Discovered;
+use super::left_out::LeftOut;
 
 /// What the truth says of a case.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -42,6 +43,10 @@ pub struct Answer {
     pub discovered: Option<Discovered>,
     /// Error left of held-out samples whose direction is settled, as the diagnosis has it.
     pub settled_left: Option<f64>,
+    /// The same case without its effect in the catalogue; none where that was not asked.
+    pub left_out: Option<LeftOut>,
+    /// Error of boosted trees, N; none where they were not asked.
+    pub trees_n: Option<f64>,
 }
 
 /// A case, scored strictly.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::worlds_score::{Score, Share, error_left};
+use super::score::{Score, Share, error_left};
 
 /// Driver and memory of a term without a name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
