@@ -4,6 +4,12 @@
 pub const FALSE_ALARMS: f64 = 0.05;
 /// A standard deviation over the median absolute deviation of a normal sample.
 const MAD_SCALE: f64 = 1.4826;
+/// Share of the deviations that a spread reaches to, too, so that long tails are no outliers: fewer values than the rest may be odd.
+const TAIL: f64 = 0.9;
+/// Deviation, in standard deviations, below which that share of a normal sample lies.
+const TAIL_SCALE: f64 = 1.6449;
+/// Fewest values that have a tail to look at: of as many, two may be odd.
+const TAILED: usize = 30;
 /// Relative efficiency of the median absolute deviation at the normal distribution: n values tell as much of the spread
 /// as this share of them would with squares. (Huber and Ronchetti, Robust Statistics, 2009, section 5.1.)
 const EFFICIENCY: f64 = 0.37;
@@ -15,7 +21,7 @@ pub const MEDIAN_PENALTY: f64 = 1.2533;
 pub struct Location {
     /// Median.
     pub center: f64,
-    /// 1.4826 times the median absolute deviation from it.
+    /// Of the absolute deviations from it, what the median or the ninth decile says of a standard deviation, whichever is more.
     pub spread: f64,
     /// Values behind both.
     pub n: usize,
@@ -25,7 +31,10 @@ pub struct Location {
 pub fn location(values: &[f64]) -> Option<Location> {
     let center = median(&mut values.to_vec())?;
     let mut deviations: Vec<f64> = values.iter().map(|value| (value - center).abs()).collect();
-    Some(Location { center, spread: MAD_SCALE * median(&mut deviations)?, n: values.len() })
+    let spread = MAD_SCALE * median(&mut deviations)?;
+    let n = values.len();
+    let tail = if n < TAILED { 0.0 } else { deviations[(TAIL * (n - 1) as f64) as usize] / TAIL_SCALE };
+    Some(Location { center, spread: spread.max(tail), n })
 }
 
 /// Median; none for none.
@@ -103,6 +112,16 @@ mod tests {
             "{clean:?} {odd:?}"
         );
         assert_eq!(location(&[]), None);
+    }
+
+    #[test]
+    fn a_long_tail_widens_the_spread() {
+        // Quantiles of a log-normal sample, whose logarithms have a standard deviation of 1.
+        let normal = |share: f64| (2.0 * share - 1.0).signum() * (-2.0 * (1.0 - (2.0 * share - 1.0).abs()).ln()).sqrt();
+        let values: Vec<f64> = (0..200).map(|index| normal((f64::from(index) + 0.5) / 200.0).exp()).collect();
+        let all = location(&values).expect("values");
+        let mut deviations: Vec<f64> = values.iter().map(|value| (value - all.center).abs()).collect();
+        assert!(all.spread > 1.3 * MAD_SCALE * median(&mut deviations).expect("values"), "{all:?}");
     }
 
     #[test]
