@@ -126,7 +126,8 @@ prove: cargo-is-there
 	$(BIN)/prove --cases $(CASES) --seed $(SEED) $(if $(filter 400,$(CASES)),--record scripts/proof)
 
 # The same question to worlds that share nothing with the fitter, below out/worlds; 100 cases where CASES is not given.
-# HALF=choose is for whoever chooses constants, HALF=report for outcomes, HALF=sealed for other forms in other worlds.
+# HALF=choose is for whoever chooses constants, HALF=report for outcomes, HALF=sealed for other forms in other worlds; KIND=nameless
+# and its like draw cases of one kind, SCORE="--trees scripts/proof/boosted-trees.py --leave-out" asks for more.
 HALF ?= report
 prove-worlds: CASES := $(if $(filter file,$(origin CASES)),100,$(CASES))
 prove-worlds: SEED ?= $(shell date +%s)
@@ -134,8 +135,8 @@ prove-worlds: WORLDS := $(OUT)/worlds
 prove-worlds: cargo-is-there
 	@$(CARGO) build --release --locked --workspace --bins
 	@rm -rf $(WORLDS)
-	$(BIN)/worlds --out $(WORLDS) --cases $(CASES) --seed $(SEED) --half $(HALF)
-	$(BIN)/score-worlds $(WORLDS) --bin $(BIN) --json $(WORLDS)/scores.json
+	$(BIN)/worlds --out $(WORLDS) --cases $(CASES) --seed $(SEED) --half $(HALF) $(if $(KIND),--kind $(KIND))
+	$(BIN)/score-worlds $(WORLDS) --bin $(BIN) --json $(WORLDS)/scores.json $(SCORE)
 
 # What halving and doubling each constant that decides does to names and false alarms: hours; it goes on where it stopped.
 sensitivity: cargo-is-there
