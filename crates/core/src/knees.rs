@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use crate::smoothing::Window;
+use crate::smoothing::{Sliding, Window};
 
 /// A curvature above so many of its own deviations is a bend.
 const BEND: f64 = 6.0;
@@ -113,7 +113,8 @@ fn found(path: &[f64], window: &Window, noise: f64) -> Vec<Knee> {
     // Nearer to an end the whole window nearest to it speaks.
     let (first, end) = (half, path.len() - half);
     let gate = BEND * noise * window.curvature_noise();
-    let curvature = |row: usize| window.parabola(path, row).curvature;
+    let mut sliding = Sliding::along(window, path);
+    let mut curvature = |row: usize| sliding.parabola(row).curvature;
     let mut row = first;
     while row < end {
         let (start, mut peak, mut highest) = (row, row, 0.0);

@@ -10,7 +10,7 @@ use crate::effects::Moment;
 use crate::force::ForceModel;
 use crate::knees::Knees;
 use crate::recording::Recording;
-use crate::smoothing::{Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Parabola, Window};
+use crate::smoothing::{Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Parabola, Sliding, Window};
 
 /// Deviations of the noise in a threshold of the direction.
 const DEVIATIONS_PER_THRESHOLD: f64 = 5.0;
@@ -71,6 +71,8 @@ pub fn walk(
         let lengths = Path::of(rows.length_m, windows, thresholds.length_m / DEVIATIONS_PER_THRESHOLD);
         let pressures = Path::of(rows.pressure_pa, windows, thresholds.pressure_pa / DEVIATIONS_PER_THRESHOLD);
         let still = Still::of(&lengths, &window, thresholds.length_m);
+        let (mut sharp_pressures, mut sharp_lengths) = (pressures.sharp(windows), lengths.sharp(windows));
+        let mut forces = Sliding::along(&near, &rows.force_n);
         // Smooth forces are to be compared with equally smooth rates. What slides and remembers it starts and stops when the
         // drive does: a stop smeared over some rows would be a crawl.
         let recorded = channels == Channels::Recorded;
@@ -86,7 +88,7 @@ pub fn walk(
         let mut at = 0;
         while at < rows.time_s.len() {
             let row = segment.start + at;
-            let [sharp_pressure, sharp_length] = [&pressures, &lengths].map(|path| path.sharp(windows, at));
+            let (sharp_pressure, sharp_length) = (sharp_pressures.at(at), sharp_lengths.at(at));
             let [pressure, length] = if recorded {
                 [sharp_pressure, sharp_length]
             } else {
@@ -95,7 +97,7 @@ pub fn walk(
                     lengths.smooth_near_knee(windows, at).unwrap_or(sharp_length),
                 ]
             };
-            let smooth_force_n = near.parabola(&rows.force_n, at).value;
+            let smooth_force_n = forces.parabola(at).value;
             let (average_m, average_pa) = (lengths.average(&average, at), pressures.average(&average, at));
             let (step_s, pressure_step_pa) =
                 last.map_or((0.0, 0.0), |(time_s, pressure_pa)| (rows.time_s[at] - time_s, average_pa - pressure_pa));
@@ -217,13 +219,8 @@ impl Path {
     }
 
     /// Value and curvature by the first of the windows, slope by the second; what knees change changes at once.
-    fn sharp(&self, [near, window]: [&Window; 2], at: usize) -> Parabola {
-        let Parabola { value, curvature, .. } = near.parabola(&self.rest, at);
-        Parabola {
-            value: value + self.knees.added(at),
-            slope: window.parabola(&self.rest, at).slope + self.knees.rate(at),
-            curvature: curvature + self.knees.bend(at),
-        }
+    fn sharp<'a>(&'a self, windows: [&'a Window; 2]) -> Sharp<'a> {
+        Sharp { path: self, windows: windows.map(|window| Sliding::along(window, &self.rest)) }
     }
 
     /// The same where knees are as smooth as all else; none where there is no knee to smooth.
@@ -235,6 +232,25 @@ impl Path {
         let recorded: Vec<f64> = around.clone().map(|row| self.recorded(row)).collect();
         let Parabola { value, curvature, .. } = near.parabola(&recorded, at - around.start);
         Some(Parabola { value, curvature, ..window.parabola(&recorded, at - around.start) })
+    }
+}
+
+/// A channel as it is read from row to row, with its knees.
+struct Sharp<'a> {
+    path: &'a Path,
+    windows: [Sliding<'a>; 2],
+}
+
+impl Sharp<'_> {
+    fn at(&mut self, at: usize) -> Parabola {
+        let [near, window] = &mut self.windows;
+        let Parabola { value, curvature, .. } = near.parabola(at);
+        let knees = &self.path.knees;
+        Parabola {
+            value: value + knees.added(at),
+            slope: window.parabola(at).slope + knees.rate(at),
+            curvature: curvature + knees.bend(at),
+        }
     }
 }
 
@@ -262,7 +278,7 @@ impl<'a> Still<'a> {
         let rows = (0..path.rest.len()).step_by(every);
         Self {
             path,
-            lengths: rows.map(|at| path.sharp([window, window], at).value).collect(),
+            lengths: rows.map(|at| window.parabola(&path.rest, at).value + path.knees.added(at)).collect(),
             every,
             reach: every * ((STILL_S / (every as f64 * window.period_s)).ceil() as usize).clamp(1, 20),
             threshold_m,

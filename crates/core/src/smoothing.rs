@@ -65,25 +65,17 @@ impl Window {
 
     /// The parabola at row `at`; near the ends that of the nearest whole window, carried on.
     pub(crate) fn parabola(&self, channel: &[f64], at: usize) -> Parabola {
-        if channel.is_empty() {
-            return Parabola::default();
+        if channel.len() <= 2 * self.half {
+            return short(channel, at);
         }
-        let width = 2 * self.half + 1;
-        if channel.len() < width {
-            return Parabola { value: channel[at], ..Parabola::default() };
-        }
-        let around = self.around(at, channel.len());
-        let center = around.start + self.half;
-        let origin = channel[center];
-        let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
-        for (offset, value) in channel[around].iter().enumerate() {
-            let u = offset as f64 - self.half as f64;
-            let value = value - origin;
-            sum += value;
-            first += u * value;
-            second += u * u * value;
-        }
-        let n = width as f64;
+        let center = self.around(at, channel.len()).start + self.half;
+        self.carried_on(channel, at, center, &Sums::around(self, channel, center))
+    }
+
+    /// The parabola of `sums`, those around row `center`, at row `at`.
+    fn carried_on(&self, channel: &[f64], at: usize, center: usize, sums: &Sums) -> Parabola {
+        let Sums { origin, sum, first, second } = *sums;
+        let n = (2 * self.half + 1) as f64;
         let determinant = n * self.sum4 - self.sum2 * self.sum2;
         let c0 = (self.sum4 * sum - self.sum2 * second) / determinant;
         let c1 = first / self.sum2;
@@ -109,6 +101,88 @@ impl Window {
             squares += 2.0 * distance * distance;
         }
         first / (squares * self.period_s)
+    }
+}
+
+/// What there is of a channel that is shorter than a window, or empty.
+fn short(channel: &[f64], at: usize) -> Parabola {
+    channel.get(at).map_or(Parabola::default(), |&value| Parabola { value, ..Parabola::default() })
+}
+
+/// Moments of a channel over a window, less its value `origin`: `Σ x`, `Σ u x` and `Σ u² x`.
+#[derive(Debug, Clone, Copy)]
+struct Sums {
+    origin: f64,
+    sum: f64,
+    first: f64,
+    second: f64,
+}
+
+impl Sums {
+    fn around(window: &Window, channel: &[f64], center: usize) -> Self {
+        let origin = channel[center];
+        let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
+        for (offset, value) in channel[center - window.half..=center + window.half].iter().enumerate() {
+            let u = offset as f64 - window.half as f64;
+            let value = value - origin;
+            sum += value;
+            first += u * value;
+            second += u * u * value;
+        }
+        Self { origin, sum, first, second }
+    }
+
+    /// The same around the next row, where `gone` is the first value of the window and `come` the next after its last.
+    fn step(&mut self, half: usize, gone: f64, come: f64) {
+        let (half, next) = (half as f64, half as f64 + 1.0);
+        let (gone, come) = (gone - self.origin, come - self.origin);
+        self.sum += come - gone;
+        let first = self.first + half * gone + next * come;
+        self.second += next * next * come - half * half * gone - 2.0 * first + self.sum;
+        self.first = first - self.sum;
+    }
+}
+
+/// Rows after which the moments of a window that slides are summed anew, so that what rounds off does not add up.
+const ANEW: usize = 32;
+
+/// A window that slides along a channel, from row to row at the same cost however long it is. What it gives at a row does not
+/// depend on the rows that it was asked for before.
+pub(crate) struct Sliding<'a> {
+    window: &'a Window,
+    channel: &'a [f64],
+    /// The row that the moments are around; none before the first.
+    center: Option<usize>,
+    sums: Sums,
+}
+
+impl<'a> Sliding<'a> {
+    pub(crate) fn along(window: &'a Window, channel: &'a [f64]) -> Self {
+        Self { window, channel, center: None, sums: Sums { origin: 0.0, sum: 0.0, first: 0.0, second: 0.0 } }
+    }
+
+    /// As [`Window::parabola`].
+    pub(crate) fn parabola(&mut self, at: usize) -> Parabola {
+        let Self { window, channel, .. } = *self;
+        let half = window.half;
+        if channel.len() <= 2 * half {
+            return short(channel, at);
+        }
+        let center = window.around(at, channel.len()).start + half;
+        let anew = (center - center % ANEW).max(half);
+        let mut row = match self.center {
+            Some(row) if (anew..=center).contains(&row) => row,
+            _ => {
+                self.sums = Sums::around(window, channel, anew);
+                anew
+            }
+        };
+        while row < center {
+            self.sums.step(half, channel[row - half], channel[row + half + 1]);
+            row += 1;
+        }
+        self.center = Some(center);
+        window.carried_on(channel, at, center, &self.sums)
     }
 }
 
@@ -162,21 +236,33 @@ impl Average {
     pub(crate) fn at(&self, channel: &[f64], at: usize) -> f64 {
         let half = self.weights.len() / 2;
         let origin = channel[at];
-        let sum: f64 = self
-            .weights
-            .iter()
-            .enumerate()
-            .map(|(index, weight)| {
-                weight * (channel[(at + index).max(half).min(half + channel.len() - 1) - half] - origin)
-            })
-            .sum();
-        origin + sum
+        if let Some(around) = at.checked_sub(half).and_then(|from| channel.get(from..=at + half)) {
+            return origin + weighted(&self.weights, around, origin);
+        }
+        let last = channel.len() - 1;
+        let around: Vec<f64> =
+            (0..self.weights.len()).map(|index| channel[(at + index).saturating_sub(half).min(last)]).collect();
+        origin + weighted(&self.weights, &around, origin)
     }
 
     /// Deviation of an average over that of the white noise of its rows.
     pub(crate) fn share_of_noise(&self) -> f64 {
         self.weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
     }
+}
+
+/// `Σ w (x − origin)`, summed in lanes.
+fn weighted(weights: &[f64], values: &[f64], origin: f64) -> f64 {
+    let mut lanes = [0.0; 4];
+    let (weights, weights_left) = weights.as_chunks::<4>();
+    let (values, values_left) = values.as_chunks::<4>();
+    for (weights, values) in weights.iter().zip(values) {
+        for lane in 0..4 {
+            lanes[lane] += weights[lane] * (values[lane] - origin);
+        }
+    }
+    let left: f64 = weights_left.iter().zip(values_left).map(|(weight, value)| weight * (value - origin)).sum();
+    lanes.iter().sum::<f64>() + left
 }
 
 /// What follows a channel but not its noise: to what remembers its path, noise at rest would be a way to and fro. It has no
@@ -248,6 +334,25 @@ mod tests {
             assert!((found.slope - (10.0 * t - 2.0)).abs() < 1e-9);
             assert!((found.curvature - 10.0).abs() < 1e-7);
         }
+    }
+
+    #[test]
+    fn a_window_that_slides_gives_the_same_whatever_rows_it_is_asked_for() {
+        let time_s: Vec<f64> = (0..400).map(|row| f64::from(row) * 0.001).collect();
+        let channel: Vec<f64> = (0..400).map(|row| 0.25 + 1e-3 * f64::from(row * row * 37 % 101)).collect();
+        let window = Window::over(&time_s, HALF_WINDOW_S);
+        let parts = |parabola: Parabola| [parabola.value, parabola.slope, parabola.curvature];
+        let (mut each, mut some) = (Sliding::along(&window, &channel), Sliding::along(&window, &channel));
+        for at in 0..400 {
+            let (direct, sliding) = (parts(window.parabola(&channel, at)), parts(each.parabola(at)));
+            for (direct, sliding) in direct.into_iter().zip(sliding) {
+                assert!((sliding - direct).abs() < 1e-11 * direct.abs().max(1.0), "{at}: {sliding} {direct}");
+            }
+            if at % 23 == 0 || at > 380 {
+                assert_eq!(parts(some.parabola(at)), sliding, "{at}");
+            }
+        }
+        assert_eq!(parts(some.parabola(7)), parts(Sliding::along(&window, &channel).parabola(7)));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use pam_core::artifact::model::{
 use pam_core::artifact::{Input, Tool};
 use pam_core::effects::Kind;
 use pam_core::force::Parameter;
-use pam_identification::evaluate::{Evaluation, evaluate, evaluate_augmented, noise_floor_n, trace_augmented};
+use pam_identification::evaluate::{Evaluation, evaluate, evaluate_augmented, evaluate_residuals, noise_floor_n};
 use pam_identification::prepare::Prepared;
 use pam_identification::search_space::Free;
 
@@ -54,6 +54,7 @@ impl Agreement {
     /// [`DiagnoseError::Recording`] where samples cannot be read back.
     pub fn of(diagnosis: &Diagnosis) -> Result<Self, DiagnoseError> {
         let Diagnosis { estimation, holdout, base, augmented, model, .. } = diagnosis;
+        let (fitted, residuals) = evaluate_residuals(estimation, augmented, model.direction)?;
         let base_holdout = evaluate(holdout, base)?;
         let holdout_without_terms = match (&diagnosis.without_terms, &diagnosis.empirical) {
             (Some(without), _) => evaluate_augmented(holdout, &without.without_events(), model.direction)?.together,
@@ -64,48 +65,34 @@ impl Agreement {
             base_estimation: evaluate(estimation, base)?,
             base_holdout,
             holdout_without_terms,
-            estimation: evaluate_augmented(estimation, augmented, model.direction)?,
+            estimation: fitted,
             holdout: evaluate_augmented(holdout, &augmented.without_events(), model.direction)?,
             noise_floor_n: noise_floor_n(estimation, augmented.base())?,
-            effective_samples: effective_samples(diagnosis)?,
+            effective_samples: effective_samples(&residuals),
         })
     }
 }
 
-/// Samples over the number of them that share one residual: `1 + 2 Σ ρ`, summed until the correlation dies away. Where there
+/// Samples of `residuals` over the number of them that share one: `1 + 2 Σ ρ`, summed until the correlation dies away. Where there
 /// are very many, thinned ones are counted.
-fn effective_samples(diagnosis: &Diagnosis) -> Result<f64, DiagnoseError> {
+fn effective_samples(residuals: &[Vec<f64>]) -> f64 {
     const MOST_LAGS: usize = 400;
-    let Diagnosis { estimation, augmented, model, .. } = diagnosis;
-    let (mut products, mut counts) = (vec![0.0; MOST_LAGS], vec![0.0; MOST_LAGS]);
-    let mut n_samples = 0.0;
-    for (index, prepared) in estimation.iter().enumerate() {
-        let trace = trace_augmented(prepared, augmented, model.direction, index)?;
-        let residuals_n: Vec<f64> = trace
-            .force_n
-            .iter()
-            .zip(&trace.model_n)
-            .zip(&trace.settled)
-            .map(|((force_n, model_n), settled)| if *settled { force_n - model_n } else { 0.0 })
-            .collect();
-        for lag in 0..MOST_LAGS.min(residuals_n.len()) {
+    // Mean product of residuals that are so many samples apart.
+    let covariance = |lag: usize| {
+        let (mut products, mut count) = (0.0, 0.0);
+        for residuals_n in residuals.iter().filter(|residuals_n| lag < residuals_n.len()) {
             for (left, right) in residuals_n.iter().zip(&residuals_n[lag..]) {
-                products[lag] += left * right;
+                products += left * right;
             }
-            counts[lag] += (residuals_n.len() - lag) as f64;
+            count += (residuals_n.len() - lag) as f64;
         }
-        n_samples += residuals_n.len() as f64;
-    }
-    let variance = products[0] / f64::max(counts[0], 1.0);
-    let mut together = 1.0;
-    for (product, count) in products.iter().zip(&counts).skip(1) {
-        let correlation = product / f64::max(*count, 1.0) / variance.max(f64::MIN_POSITIVE);
-        if correlation < 0.05 {
-            break;
-        }
-        together += 2.0 * correlation;
-    }
-    Ok(n_samples / together)
+        products / f64::max(count, 1.0)
+    };
+    let n_samples = residuals.iter().map(Vec::len).sum::<usize>() as f64;
+    let variance = covariance(0).max(f64::MIN_POSITIVE);
+    let correlations = (1..MOST_LAGS).map(|lag| covariance(lag) / variance);
+    let together = 1.0 + correlations.take_while(|correlation| *correlation >= 0.05).map(|one| 2.0 * one).sum::<f64>();
+    n_samples / together
 }
 
 impl Diagnosis {

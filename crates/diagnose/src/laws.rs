@@ -8,6 +8,7 @@ use pam_core::effects::Role;
 use pam_core::force::Form;
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
+use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::CandidateEffect;
@@ -45,7 +46,7 @@ pub(crate) fn better(
     for standstill in LAWS.into_iter().filter(|law| *law != thresholds.standstill) {
         let directions: Result<Vec<Direction>, IdentifyError> = question
             .estimation
-            .iter()
+            .par_iter()
             .map(|prepared| directed(prepared, Thresholds { standstill, ..thresholds }))
             .collect();
         let other = track.redirected(&directions?);

@@ -4,6 +4,7 @@ use pam_core::artifact::model::FitStatistics;
 use pam_core::direction::Thresholds;
 use pam_core::effects::AugmentedModel;
 use pam_core::force::ForceModel;
+use pam_core::motion::Instant;
 use pam_core::quality::channel::whole_noise_std;
 use pam_core::recording::CHUNK_ROWS;
 use rayon::prelude::*;
@@ -192,26 +193,62 @@ pub fn evaluate_augmented(
     let tallies: Result<Vec<Tally>, IdentifyError> = recordings
         .par_iter()
         .enumerate()
-        .map(|(index, prepared)| {
-            let mut tally = Tally::default();
-            walk_augmented(prepared, model, thresholds, index, &mut |instant, model_n| {
-                if instant.settled {
-                    let moment = &instant.moment;
-                    tally.push(instant.force_n, model_n, || NoForceAt {
-                        time_s: moment.time_s,
-                        pressure_pa: moment.pressure_pa,
-                        length_m: moment.length_m,
-                    });
-                } else {
-                    tally.push_unsettled(instant.force_n, model_n);
-                }
-            })
-            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
-            tally.judge(prepared, model.base())?;
-            Ok(tally)
-        })
+        .map(|(index, prepared)| tally_augmented(prepared, model, thresholds, index, &mut |_, _| {}))
         .collect();
     Ok(Evaluation::of(&tallies?))
+}
+
+/// The same, with what is left of the samples of each recording in N, as much as a [`Trace`] holds of them; zero where they are
+/// not counted.
+///
+/// # Errors
+/// As [`evaluate`].
+pub fn evaluate_residuals(
+    recordings: &[Prepared],
+    model: &AugmentedModel,
+    thresholds: Thresholds,
+) -> Result<(Evaluation, Vec<Vec<f64>>), IdentifyError> {
+    let walked = |(index, prepared): (usize, &Prepared)| {
+        let stride = trace_stride(prepared);
+        let mut residuals_n = Vec::new();
+        let tally = tally_augmented(prepared, model, thresholds, index, &mut |instant, model_n| {
+            if instant.row.is_multiple_of(stride) {
+                residuals_n.push(if instant.settled { instant.force_n - model_n } else { 0.0 });
+            }
+        })?;
+        Ok((tally, residuals_n))
+    };
+    let walked: Result<Vec<(Tally, Vec<f64>)>, IdentifyError> = recordings.par_iter().enumerate().map(walked).collect();
+    let (tallies, residuals_n): (Vec<Tally>, Vec<Vec<f64>>) = walked?.into_iter().unzip();
+    let evaluation = if model.is_plain() { evaluate(recordings, model.base())? } else { Evaluation::of(&tallies) };
+    Ok((evaluation, residuals_n))
+}
+
+/// Agreement of one recording, each row of which `visit` sees with the modelled force in N.
+fn tally_augmented(
+    prepared: &Prepared,
+    model: &AugmentedModel,
+    thresholds: Thresholds,
+    index: usize,
+    visit: &mut dyn FnMut(&Instant, f64),
+) -> Result<Tally, IdentifyError> {
+    let mut tally = Tally::default();
+    walk_augmented(prepared, model, thresholds, index, &mut |instant, model_n| {
+        if instant.settled {
+            let moment = &instant.moment;
+            tally.push(instant.force_n, model_n, || NoForceAt {
+                time_s: moment.time_s,
+                pressure_pa: moment.pressure_pa,
+                length_m: moment.length_m,
+            });
+        } else {
+            tally.push_unsettled(instant.force_n, model_n);
+        }
+        visit(instant, model_n);
+    })
+    .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
+    tally.judge(prepared, model.base())?;
+    Ok(tally)
 }
 
 /// What to say of a model that has no force for `n` of `n_counted` samples, the first of them `at`.

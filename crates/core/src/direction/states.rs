@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::rest::{pushed, standstills};
 use super::turn::{NOISE, Turn};
 use super::{Driver, Standstill, Thresholds};
-use crate::smoothing::Window;
+use crate::smoothing::{Sliding, Window};
 
 /// Length of the moving average, in s; at least five samples and at most 101 are averaged.
 pub const WINDOW_S: f64 = 0.05;
@@ -166,7 +166,8 @@ fn path(time_s: &[f64], period_s: f64, shortening: &[f64], thresholds: Threshold
     // A parabola over n values leaves 2.25 / n of the variance in the middle one.
     let n = 2.25 * (NOISE * thresholds.length_m / PATH_M).powi(2);
     let window = Window::over(time_s, (0.5 * n * period_s).min(PATH_S));
-    (0..shortening.len()).map(|row| window.parabola(shortening, row).value).collect()
+    let mut sliding = Sliding::along(&window, shortening);
+    (0..shortening.len()).map(|row| sliding.parabola(row).value).collect()
 }
 
 /// Lets the states follow the travel along `path` after every turn, as `thresholds` say; over the stretches `pushed` the
