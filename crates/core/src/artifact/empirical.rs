@@ -40,6 +40,9 @@ pub struct EmpiricalTerm {
     pub equation: String,
     /// The same in words.
     pub words: String,
+    /// The named effect that it bends: by this, the effect differs from its published form. None where it is another thing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bends: Option<String>,
     /// Its amplitudes, SI.
     pub parameters: Vec<ParameterEntry>,
     /// Why it is believed.

@@ -3,6 +3,7 @@
 use pam_core::artifact::diagnosis::Verdict;
 use pam_core::effects::{AugmentedModel, Sentence, Term};
 
+use super::bends::{PREFERRED, bends};
 use super::field::Field;
 use super::screen::{self, Said};
 use super::{joined, stability};
@@ -48,6 +49,8 @@ pub(crate) struct Discovery {
 #[derive(Debug, Clone)]
 pub(super) struct Written {
     pub(super) sentence: Sentence,
+    /// The named effect whose form it bends, if it does.
+    pub(super) bends: Option<&'static str>,
     pub(super) without: HeldOut,
     pub(super) with: HeldOut,
     /// What else was in question, with how often draws of blocks choose it, this one first.
@@ -88,8 +91,8 @@ pub(crate) fn discover(
 ) -> Option<Discovery> {
     let left_over = match verdict {
         Verdict::Unexplained => true,
-        Verdict::Explained => sizes.best_n > LEAVES_ENOUGH * sizes.sensors_n,
-        Verdict::Consistent | Verdict::ExplainedInPart | Verdict::Ambiguous => false,
+        Verdict::Explained | Verdict::Ambiguous => sizes.best_n > LEAVES_ENOUGH * sizes.sensors_n,
+        Verdict::Consistent | Verdict::ExplainedInPart => false,
     };
     if !left_over {
         return None;
@@ -146,13 +149,26 @@ fn next_term(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Option<St
     let beside = setting.beside(&step.nuisance);
     let field = Field::of(&beside, &best.state)?;
     let said = screen::screen(&field, &beside, &best.state);
-    let fitted = said.iter().take(FITTED).enumerate().filter_map(|(index, said)| {
+    let bent = |said: &Said| bends(&said.sentence, &best.state.guesses);
+    // The first that bends what was named is looked at wherever it stands.
+    let first_bent = said.iter().position(|said| bent(said).is_some()).filter(|index| *index >= FITTED);
+    let looked_at = (0..said.len().min(FITTED)).chain(first_bent);
+    let fitted = looked_at.filter_map(|index| {
+        let said = &said[index];
         let sentences = [step.sentences(), vec![said.sentence.clone()]].concat();
         let (next, nuisance) = joined::joined(setting, mapped, best, &sentences)?;
         Some((best.held_out.log_ratio(&next.held_out) - said.charge(), index, next, nuisance))
     });
     let fitted: Vec<(f64, usize, Judged, Nuisance)> = fitted.collect();
-    let (log_ratio, index, next, nuisance) = fitted.into_iter().max_by(|left, right| left.0.total_cmp(&right.0))?;
+    // Another form of what was named comes before anything else that is there.
+    let most = fitted.iter().map(|fitted| fitted.0).fold(f64::NEG_INFINITY, f64::max);
+    let is_bent =
+        |fitted: &(f64, usize, Judged, Nuisance)| bent(&said[fitted.1]).is_some() && fitted.0 > PREFERRED * most;
+    let any_bent = fitted.iter().any(is_bent);
+    let (log_ratio, index, next, nuisance) = fitted
+        .into_iter()
+        .filter(|fitted| !any_bent || is_bent(fitted))
+        .max_by(|left, right| left.0.total_cmp(&right.0))?;
     let gained = best.held_out.mean_square() - next.held_out.mean_square();
     if log_ratio < LEAST_LOG_RATIO || gained < LEAST_SHARE * best.held_out.mean_square() {
         return None;
@@ -165,7 +181,8 @@ fn next_term(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Option<St
     chosen.insert(0, own);
     let (without, with) = (best.held_out.clone(), next.held_out.clone());
     let mut terms = step.terms.clone();
-    terms.push(Written { sentence, without, with, chosen });
+    let bends = bends(&sentence, &best.state.guesses);
+    terms.push(Written { sentence, bends, without, with, chosen });
     Some(Step { best: next, nuisance, terms })
 }
 

@@ -11,14 +11,18 @@ const ONLY: f64 = 0.6;
 /// Share of the height of a curve by which one that grows may fall.
 const STEADY: f64 = 0.1;
 
-/// What a term does, in one sentence without its full stop.
-pub(super) fn words(sentence: &Sentence, curve: &EmpiricalCurve) -> String {
+/// What a term does, in one sentence without its full stop; `bends` is the named effect whose form it bends.
+pub(super) fn words(sentence: &Sentence, curve: &EmpiricalCurve, bends: Option<&str>) -> String {
     let height_n = curve.force_n.iter().fold(0.0_f64, |height_n, force_n| height_n.max(force_n.abs()));
     let parts = [
         format!("a force of up to {} N that {}", rounded(height_n), place(sentence, curve)),
         scale(sentence.scale, height_n, curve.typical_scale),
     ];
     let mut text = parts.join(", ");
+    if let Some(id) = bends {
+        text.push_str(&format!(": by this, {id} differs here from its published form"));
+        return text;
+    }
     if let Some(cause) = cause(sentence, acts_within(curve).is_some()) {
         text.push_str(": ");
         text.push_str(cause);
@@ -212,7 +216,7 @@ mod tests {
     fn a_bump_is_said_by_its_place_and_by_what_it_does_not_depend_on() {
         let (sentence, curve) = bump(Scale::One);
         assert_eq!(
-            words(&sentence, &curve),
+            words(&sentence, &curve, None),
             "a force of up to 7.25 N that acts only where the contraction is between 11 and 13 %, the same in both directions, independent of pressure: something may touch the muscle there"
         );
     }
@@ -229,7 +233,7 @@ mod tests {
         };
         (curve.typical_scale, curve.unit) = (1e-3, "Pa".to_owned());
         assert_eq!(
-            words(&sentence, &curve),
+            words(&sentence, &curve, None),
             "a force of up to 12 N that is proportional to the recent change of the pressure (time constant 0.31 s), equivalent to a pressure error of up to 12 kPa: the pressure in the muscle may follow the gauge late"
         );
     }

@@ -23,7 +23,8 @@ impl Discovery {
             let curve = curve::curve(setting, state, &written.sentence, &term.amplitudes, &of_folds);
             EmpiricalTerm {
                 equation: written.sentence.equation(),
-                words: said::words(&written.sentence, &curve),
+                words: said::words(&written.sentence, &curve, written.bends),
+                bends: written.bends.map(str::to_owned),
                 sentence: written.sentence.clone(),
                 parameters: parameters(&term, &of_folds),
                 evidence: evidence(&written.without, &written.with, LOOKS as usize),

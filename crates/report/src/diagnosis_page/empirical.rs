@@ -54,8 +54,8 @@ pub(super) fn empirical(page: Option<&PageEmpirical>) -> Result<String, FigureEr
         if page.of_holdout { "over counted samples of held-out recordings" } else { "of blocks left out of the fit" };
     let mut html = heading("Unmodelled structure, as empirical terms");
     html.push_str(&paragraph(&format!(
-        "No effect of the catalogue explains the rest. An empirical equation, found in these recordings, lowers the RMSE \
-         {on} from {without_n} to {with_n}, everything else fitted beside it. It describes and does not explain; outside the \
+        "No effect of the catalogue in its published form explains the rest. An empirical equation, found in these recordings, \
+         lowers the RMSE {on} from {without_n} to {with_n}, everything else fitted beside it. It describes and does not explain; outside the \
          range of the recordings it fades to zero."
     )));
     for term in &page.terms {
