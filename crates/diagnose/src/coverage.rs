@@ -1,7 +1,7 @@
 //! Where in pressure and length the fitted recordings have been: what a model says elsewhere is extrapolated, and a hold-out that
 //! differs there says nothing of what is missing.
 
-use pam_identification::evaluate::Trace;
+use pam_identification::trace::Trace;
 
 /// Cells along pressure and along length.
 const CELLS: usize = 10;

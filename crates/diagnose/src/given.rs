@@ -10,11 +10,12 @@ use pam_core::artifact::model::{FitStatistics, ModelArtifact};
 use pam_core::effects::{AugmentedModel, Kind};
 use pam_core::force::{ForceModel, Parameter};
 use pam_identification::condense::condense;
-use pam_identification::evaluate::{Evaluation, evaluate_augmented, trace_augmented};
+use pam_identification::evaluate::{Evaluation, evaluate_augmented};
 use pam_identification::faults::reading::{self, MISSES};
 use pam_identification::prepare::Prepared;
 use pam_identification::problem::ForceProblem;
 use pam_identification::search_space::{Free, SearchSpace};
+use pam_identification::trace::trace_augmented;
 use pam_identification::uncertainty::jackknife;
 use pam_optim::polish::descend;
 

@@ -4,8 +4,9 @@
 //! several times theirs under both the base and the diagnosed model differs in something that no fit has seen: an instrument,
 //! or the muscle.
 
-use pam_identification::evaluate::{Trace, noise_floor_n, trace, trace_augmented};
+use pam_identification::evaluate::noise_floor_n;
 use pam_identification::faults::reading::{self, MISSES};
+use pam_identification::trace::{Trace, trace, trace_augmented};
 
 use crate::artifact::{Agreement, together};
 use crate::coverage::Coverage;

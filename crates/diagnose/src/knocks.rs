@@ -6,6 +6,8 @@
 //! the speed (friction, damping, delays); what remains must be one mass times the acceleration behind one mount
 //! ([`pam_core::effects::Mount`]), the same in all knocks.
 
+mod line;
+
 use std::ops::Range;
 
 use pam_core::artifact::ModelArtifact;
@@ -13,7 +15,6 @@ use pam_core::artifact::diagnosis::{Coordinate, Region};
 use pam_core::artifact::model::ParameterEntry;
 use pam_core::direction::Thresholds;
 use pam_core::effects::{AugmentedModel, Effect, Mount, Term, effect};
-use pam_core::smoothing::acceleration_weights;
 use pam_identification::error::IdentifyError;
 use pam_identification::predict::walk_augmented;
 use pam_identification::prepare::Prepared;
@@ -25,15 +26,11 @@ use crate::track::FOLDS;
 use crate::uncertainty::entry;
 use crate::verdict::Sizes;
 
+use line::{Knock, Line, Sums};
+
 /// Catalogue id of what knocks.
 pub const ID: &str = "inertia";
 
-/// An acceleration is a knock above so many times the usual one of its segment.
-const TIMES_USUAL: f64 = 8.0;
-/// The same in m/s², where the usual one is nothing.
-const LEAST_M_PER_S2: f64 = 0.3;
-/// The speed of a knock changes within this time, in s: a slower one is seen by the ordinary search.
-const LONGEST_S: f64 = 0.045;
 /// InertialTransient that are needed.
 const LEAST_KNOCKS: usize = 8;
 /// The largest mass may be passed by so much as long as its size is not all that well known.
@@ -274,173 +271,6 @@ impl InertialTransient {
             recording: None,
         }
     }
-}
-
-/// One segment of a recording, row by row.
-#[derive(Debug, Default)]
-struct Line {
-    /// Number of the recording, and the first row of the segment in it.
-    recording: usize,
-    first_row: usize,
-    times_s: Vec<f64>,
-    /// In m/s².
-    accelerations: Vec<f64>,
-    /// In m/s.
-    speeds: Vec<f64>,
-    residuals_n: Vec<f64>,
-    /// Whether the speed changes at once before a row.
-    knees: Vec<bool>,
-}
-
-/// A knock with the rows around it.
-#[derive(Debug, Clone)]
-struct Knock {
-    period_s: f64,
-    /// From some time before the window, for the mount to come to rest.
-    accelerations: Vec<f64>,
-    /// Rows before the window.
-    before: usize,
-    /// In the window, averaged as the acceleration is.
-    residuals_n: Vec<f64>,
-    fastest_m_per_s: f64,
-    /// Number of the recording, and the rows of the window in it.
-    place: (usize, Range<usize>),
-}
-
-impl Line {
-    fn knocks(&self, residual: Residual) -> Vec<Knock> {
-        let n = self.times_s.len();
-        let Some(period_s) = (n > 1).then(|| (self.times_s[n - 1] - self.times_s[0]) / (n - 1) as f64) else {
-            return Vec::new();
-        };
-        let weights = acceleration_weights(period_s);
-        let half = weights.len() / 2 + 1;
-        let (before, after) = (8 * half, 4 * half);
-        let mut sizes: Vec<f64> = self.accelerations.iter().map(|acceleration| acceleration.abs()).collect();
-        if n <= before + after + 2 * half {
-            return Vec::new();
-        }
-        let (_, usual, _) = sizes.select_nth_unstable_by(n / 2, f64::total_cmp);
-        let threshold = (TIMES_USUAL * 1.4826 * *usual).max(LEAST_M_PER_S2);
-        let mut knocks = Vec::new();
-        let mut at = before + half;
-        while at < n - after - half {
-            if self.accelerations[at].abs() <= threshold {
-                at += 1;
-                continue;
-            }
-            let end = (at..n - after - half).find(|&row| self.accelerations[row].abs() <= threshold);
-            let end = end.unwrap_or(n - after - half);
-            let peak = (at..end)
-                .max_by(|&left, &right| self.accelerations[left].abs().total_cmp(&self.accelerations[right].abs()))
-                .unwrap_or(at);
-            at = end + half;
-            let (came, went) = (self.speeds[peak - 2 * half], self.speeds[peak + 2 * half]);
-            if ((went - came) / self.accelerations[peak]).abs() > LONGEST_S {
-                continue;
-            }
-            let window = peak - 3 * half..peak + after;
-            let averaged = |values: &[f64], row: usize| -> f64 {
-                values[row + 1 - half..row + half].iter().zip(&weights).map(|(value, weight)| value * weight).sum()
-            };
-            // What is no knee is an average already; forces are to be averaged alike.
-            let is_knee = self.knees[window.clone()].contains(&true);
-            let as_it_is = is_knee && residual == Residual::Explained;
-            let choose =
-                |values: &[f64], row: usize, plain: bool| if plain { values[row] } else { averaged(values, row) };
-            let residuals_n: Vec<f64> = window.clone().map(|row| choose(&self.residuals_n, row, as_it_is)).collect();
-            let accelerations =
-                (peak - before..window.end).map(|row| choose(&self.accelerations, row, as_it_is || !is_knee)).collect();
-            if residuals_n.iter().all(|residual| residual.is_finite()) {
-                knocks.push(Knock {
-                    period_s,
-                    accelerations,
-                    before: before - 3 * half,
-                    residuals_n,
-                    fastest_m_per_s: came.abs().max(went.abs()),
-                    place: (self.recording, self.first_row + window.start..self.first_row + window.end),
-                });
-            }
-        }
-        knocks
-    }
-}
-
-/// Sums over the rows of knocks of residual and acceleration, both cleared of level, slope and perhaps speed.
-#[derive(Debug, Clone, Copy, Default)]
-struct Sums {
-    rows: f64,
-    /// Residual squared, in N².
-    yy: f64,
-    /// Acceleration squared, in m²/s⁴.
-    aa: f64,
-    /// Their product.
-    ay: f64,
-}
-
-impl Sums {
-    fn total<'a>(sums: impl IntoIterator<Item = &'a Self>) -> Self {
-        sums.into_iter().fold(Self::default(), |total, sums| Self {
-            rows: total.rows + sums.rows,
-            yy: total.yy + sums.yy,
-            aa: total.aa + sums.aa,
-            ay: total.ay + sums.ay,
-        })
-    }
-
-    fn slope(&self) -> f64 {
-        if self.aa > 0.0 { self.ay / self.aa } else { 0.0 }
-    }
-
-    fn left_by(&self, slope: f64) -> f64 {
-        (self.yy - 2.0 * slope * self.ay + slope * slope * self.aa).max(0.0)
-    }
-
-    fn left(&self) -> f64 {
-        self.left_by(self.slope())
-    }
-}
-
-impl Knock {
-    fn sums(&self, mount_hz: f64, residual: Residual) -> Sums {
-        let rows = self.residuals_n.len();
-        let mut mount = Mount::new(mount_hz);
-        let behind = self.accelerations.iter().map(|&acceleration| mount.follow(acceleration, self.period_s));
-        // What the acceleration sums up to is the speed, averaged as it is.
-        let mut speed = 0.0;
-        let speeds = self.accelerations[self.before..].iter().map(|&acceleration| {
-            speed += 0.5 * acceleration;
-            let here = speed;
-            speed += 0.5 * acceleration;
-            here
-        });
-        let mut cleared: Vec<Vec<f64>> = Vec::new();
-        let columns = [
-            vec![1.0; rows],
-            (0..rows).map(|row| row as f64).collect(),
-            speeds.collect(),
-            behind.skip(self.before).collect(),
-            self.residuals_n.clone(),
-        ];
-        for mut column in columns {
-            for basis in cleared.iter().take(residual.n_cleared()) {
-                let share = dot(basis, &column) / dot(basis, basis).max(f64::MIN_POSITIVE);
-                column.iter_mut().zip(basis).for_each(|(value, basis)| *value -= share * basis);
-            }
-            cleared.push(column);
-        }
-        let (acceleration, residual) = (&cleared[3], &cleared[4]);
-        Sums {
-            rows: rows as f64,
-            yy: dot(residual, residual),
-            aa: dot(acceleration, acceleration),
-            ay: dot(acceleration, residual),
-        }
-    }
-}
-
-fn dot(left: &[f64], right: &[f64]) -> f64 {
-    left.iter().zip(right).map(|(left, right)| left * right).sum()
 }
 
 #[cfg(test)]

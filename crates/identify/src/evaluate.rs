@@ -6,15 +6,12 @@ use pam_core::effects::AugmentedModel;
 use pam_core::force::ForceModel;
 use pam_core::motion::Instant;
 use pam_core::quality::channel::whole_noise_std;
-use pam_core::recording::CHUNK_ROWS;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;
 use crate::predict::walk_augmented;
 use crate::prepare::Prepared;
-
-/// Most samples of one recording that a trace keeps.
-const TRACE_SAMPLES: usize = 40_000;
+use crate::trace::{every, trace_stride};
 
 /// Where a model first gave no number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -131,25 +128,6 @@ impl Tally {
             n_unsettled: self.n_unsettled,
         }
     }
-}
-
-/// Samples of one recording beside what the model says, thinned out evenly where there are many.
-#[derive(Debug, Clone, Default)]
-pub struct Trace {
-    /// Time, in s.
-    pub time_s: Vec<f64>,
-    /// Gauge pressure, in Pa.
-    pub pressure_pa: Vec<f64>,
-    /// Length, in m.
-    pub length_m: Vec<f64>,
-    /// Force as measured, in N.
-    pub force_n: Vec<f64>,
-    /// Force as modelled, in N.
-    pub model_n: Vec<f64>,
-    /// Direction of motion: +1 contracting, -1 extending.
-    pub direction: Vec<f64>,
-    /// Whether the direction is certain.
-    pub settled: Vec<bool>,
 }
 
 /// Statistics of every recording and of all together.
@@ -362,66 +340,6 @@ pub fn noise_floor_n(recordings: &[Prepared], model: &ForceModel) -> Result<f64,
 
 /// Samples of one recording that the noise floor is averaged over, about.
 const FLOOR_SAMPLES: usize = 1000;
-
-/// Samples of `prepared` beside what `model` says.
-///
-/// # Errors
-/// [`IdentifyError::Samples`] where samples cannot be read back.
-pub fn trace(prepared: &Prepared, model: &ForceModel) -> Result<Trace, IdentifyError> {
-    every(prepared, model, trace_stride(prepared))
-}
-
-/// Rows from one sample of a trace to the next.
-fn trace_stride(prepared: &Prepared) -> usize {
-    prepared.recording.samples.n_rows().div_ceil(TRACE_SAMPLES).max(1)
-}
-
-/// Every `stride`-th sample of `prepared` beside what `model` says.
-fn every(prepared: &Prepared, model: &ForceModel, stride: usize) -> Result<Trace, IdentifyError> {
-    let samples = &prepared.recording.samples;
-    let mut trace = Trace::default();
-    let mut row = 0;
-    while row < samples.n_rows() {
-        let chunk = samples
-            .chunk(row / CHUNK_ROWS)
-            .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
-        while row < chunk.first_row() + chunk.n_rows() {
-            let here = row - chunk.first_row();
-            let (pressure_pa, length_m) = (chunk.pressure_pa()[here], chunk.length_m()[here]);
-            let direction = prepared.direction.sign(row);
-            trace.time_s.push(chunk.time_s()[here]);
-            trace.pressure_pa.push(pressure_pa);
-            trace.length_m.push(length_m);
-            trace.force_n.push(chunk.force_n()[here]);
-            trace.model_n.push(model.force_n(pressure_pa, length_m, direction));
-            trace.direction.push(direction);
-            trace.settled.push(prepared.direction.is_settled(row));
-            row += stride;
-        }
-    }
-    Ok(trace)
-}
-
-/// Samples of `prepared` beside what an augmented model says; `index` is the number of the recording.
-///
-/// # Errors
-/// [`IdentifyError::Samples`] where samples cannot be read back.
-pub fn trace_augmented(
-    prepared: &Prepared,
-    model: &AugmentedModel,
-    thresholds: Thresholds,
-    index: usize,
-) -> Result<Trace, IdentifyError> {
-    let stride = trace_stride(prepared);
-    let mut model_n = Vec::new();
-    walk_augmented(prepared, model, thresholds, index, &mut |instant, force_n| {
-        if instant.row.is_multiple_of(stride) {
-            model_n.push(force_n);
-        }
-    })
-    .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
-    Ok(Trace { model_n, ..trace(prepared, model.base())? })
-}
 
 #[cfg(test)]
 mod tests {

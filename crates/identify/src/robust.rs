@@ -13,11 +13,11 @@ use pam_optim::polish::descend;
 
 use crate::condense::{Condensed, condense};
 use crate::error::IdentifyError;
-use crate::evaluate::trace;
 use crate::fit::Fit;
 use crate::prepare::Prepared;
 use crate::problem::ForceProblem;
 use crate::search_space::SearchSpace;
+use crate::trace::trace;
 
 const TUNING: f64 = 1.345;
 const MAX_ROUNDS: usize = 40;

@@ -1,9 +1,13 @@
 //! The same columns with weights free of any sign or range: what eq. 11 could reach if physics did not bind it.
 
 use nalgebra::{DMatrix, DVector};
-use pam_core::artifact::model::ImpliedParameter;
+use pam_core::artifact::model::{ImpliedParameter, UnboundedFit};
 use pam_core::force::columns::{BLADDER, BRAID, FRICTION, ForceColumns, N_COLUMNS};
 use pam_optim::summary::Summary;
+
+use crate::condense::{Condensed, condense};
+use crate::error::IdentifyError;
+use crate::prepare::Prepared;
 
 /// Columns that take part: the stretch of the strands with its first-order column alone, as the others bend
 /// it to no purpose here.
@@ -61,6 +65,25 @@ pub fn implied(columns: &ForceColumns, weights: &[f64]) -> Vec<ImpliedParameter>
 /// Within 20 %, which no uncertainty of a bench recording exceeds.
 fn agrees(left: f64, right: f64) -> bool {
     (left - right).abs() <= 0.2 * left.abs().max(right.abs())
+}
+
+/// Weights without bounds; none where the recordings are so far from any muscle's that there are none.
+pub(crate) fn unbounded_fit(
+    columns: &ForceColumns,
+    condensed: &Condensed,
+    validation: &[Prepared],
+) -> Result<Option<UnboundedFit>, IdentifyError> {
+    let Some(weights) = best_weights(&condensed.total) else { return Ok(None) };
+    let rmse_n = |condensed: &Condensed| {
+        (condensed.total.residual_square_sum(&weights) / condensed.total.n_rows().max(1) as f64).sqrt()
+    };
+    let validation_rmse_n =
+        if validation.is_empty() { None } else { Some(rmse_n(&condense(validation, columns, 1, None)?)) };
+    Ok(Some(UnboundedFit {
+        estimation_rmse_n: rmse_n(condensed),
+        validation_rmse_n,
+        implied: implied(columns, &weights),
+    }))
 }
 
 #[cfg(test)]

@@ -45,6 +45,7 @@ pub mod severity;
 pub mod shape;
 pub mod simulate;
 pub mod slices;
+mod stage;
 pub mod standstill;
 pub mod world;
 pub mod write;

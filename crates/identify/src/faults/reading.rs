@@ -21,8 +21,9 @@ use pam_core::force::ForceModel;
 use super::noise;
 use super::scale::unit_words;
 use crate::error::IdentifyError;
-use crate::evaluate::{Trace, noise_floor_n, trace_augmented};
+use crate::evaluate::noise_floor_n;
 use crate::prepare::Prepared;
+use crate::trace::{Trace, trace_augmented};
 
 /// Times what the model missed of its own recordings, or what sensors or a refit leave, beyond which it misses one: half as much
 /// again. To its own recordings a model is within a percent of its refit; a gain of 2 % makes ten times as much.
