@@ -277,6 +277,8 @@ impl InertialTransient {
 mod tests {
     use std::f64::consts::TAU;
 
+    use pam_core::smoothing::acceleration_weights;
+
     use super::*;
 
     const PERIOD_S: f64 = 0.005;
