@@ -4,7 +4,7 @@ use pam_core::artifact::group::{RigCandidate, Says};
 use pam_core::effects::{Effect, Term};
 
 use super::member::{Estimate, Fitted, Member, Worth};
-use super::shared::{Shared, best, is_apart, own_value, polished, pooled, spread};
+use super::shared::{OnGrid, Shared, best, is_apart, on_grid, own_value, polished, pooled, spread};
 use crate::hypothesis::CandidateEffect;
 use crate::verdict::{DECLARED_RIVAL, RIVAL};
 use crate::veto::Share;
@@ -21,6 +21,9 @@ const LEAST_OF_OTHERS: f64 = 1.5;
 const LEAST_ALONE: f64 = 1.5;
 /// Muscles that share a value, at least.
 const LEAST_MUSCLES: usize = 2;
+/// Share of what the best effect gains on its grid that another must gain there for its shape to be looked for: what is refined seldom
+/// gains more than twice as much.
+const PROMISES: f64 = 0.25;
 /// Share of what is left beyond the sensors that it must explain in the muscles that show it, on average.
 const LEAST_SHARE: f64 = 0.1;
 
@@ -58,7 +61,10 @@ impl Has {
 /// Every effect of `effects` at the shape that gains most in all `members`, the best first.
 pub(super) fn look(members: &[Member<'_>], effects: &[&'static dyn Effect]) -> Vec<Shared> {
     let all: Vec<&Member<'_>> = members.iter().collect();
-    let mut found: Vec<Shared> = effects.iter().filter_map(|effect| best(&all, *effect)).collect();
+    let on_grid: Vec<OnGrid> = effects.iter().filter_map(|effect| on_grid(&all, *effect)).collect();
+    let most = on_grid.iter().map(|one| one.log_ratio).fold(0.0, f64::max);
+    let shared = |one: OnGrid| if one.log_ratio > PROMISES * most { one.refined(&all) } else { one.as_it_is(&all) };
+    let mut found: Vec<Shared> = on_grid.into_iter().filter_map(shared).collect();
     found.sort_by(|left, right| right.log_ratio().total_cmp(&left.log_ratio()));
     found
 }

@@ -32,6 +32,11 @@ pub(super) struct Shared {
 }
 
 impl Shared {
+    fn of(members: &[&Member<'_>], guess: CandidateEffect) -> Option<Self> {
+        let each = members.par_iter().map(|member| member.worth(&guess, false)).collect::<Option<Vec<_>>>()?;
+        Some(Self { guess, each })
+    }
+
     /// Log predictive ratio of all muscles together.
     pub(super) fn log_ratio(&self) -> f64 {
         self.each.iter().map(|worth| worth.log_ratio).sum()
@@ -40,6 +45,19 @@ impl Shared {
 
 /// `effect` with the shape that gains most in `members` together; none where some of them determine no fit with it.
 pub(super) fn best(members: &[&Member<'_>], effect: &'static dyn Effect) -> Option<Shared> {
+    on_grid(members, effect)?.refined(members)
+}
+
+/// An effect at the shapes of its grid.
+pub(super) struct OnGrid {
+    /// Those that are refined with how closely they are followed, the best first.
+    starts: Vec<(f64, CandidateEffect)>,
+    /// What the first is worth, on the instants that a search for a shape looks at.
+    pub(super) log_ratio: f64,
+}
+
+/// `effect` on its grid in `members` together; none where some of them determine no fit with it.
+pub(super) fn on_grid(members: &[&Member<'_>], effect: &'static dyn Effect) -> Option<OnGrid> {
     let seen = members.iter().map(|member| member.seen).reduce(wider)?;
     let guesses: Vec<CandidateEffect> = effect
         .first_shapes(&seen)
@@ -50,24 +68,37 @@ pub(super) fn best(members: &[&Member<'_>], effect: &'static dyn Effect) -> Opti
         })
         .collect();
     let tried = guesses.into_par_iter().filter_map(|guess| Some((follows(members, &guess, true)?, guess)));
-    let mut tried: Vec<(f64, CandidateEffect)> = tried.collect();
-    tried.sort_by(|left, right| right.0.total_cmp(&left.0));
+    let mut starts: Vec<(f64, CandidateEffect)> = tried.collect();
+    starts.sort_by(|left, right| right.0.total_cmp(&left.0));
     // Neighbors of one another that differ in the second shape alone lead to one place.
     let mut firsts: Vec<Option<f64>> = Vec::new();
-    tried.retain(|(_, guess)| {
+    starts.retain(|(_, guess)| {
         let first = guess.shape.first().copied();
         let is_new = !firsts.contains(&first);
         firsts.push(first);
         is_new
     });
-    tried.truncate(STARTS);
-    let refined = tried.into_par_iter().filter_map(|(followed, guess)| {
-        let guess = refined(members, guess, followed);
-        Some((follows(members, &guess, true)?, guess))
-    });
-    let (_, guess) = refined.max_by(|left, right| left.0.total_cmp(&right.0))?;
-    let each = members.par_iter().map(|member| member.worth(&guess, false)).collect::<Option<Vec<_>>>()?;
-    Some(Shared { guess, each })
+    starts.truncate(STARTS);
+    let log_ratio: Option<f64> =
+        members.par_iter().map(|member| Some(member.worth(&starts.first()?.1, true)?.log_ratio)).sum();
+    log_ratio.map(|log_ratio| OnGrid { starts, log_ratio })
+}
+
+impl OnGrid {
+    /// With the shape that gains most, near the best of the grid.
+    pub(super) fn refined(self, members: &[&Member<'_>]) -> Option<Shared> {
+        let refined = self.starts.into_par_iter().filter_map(|(followed, guess)| {
+            let guess = refined(members, guess, followed);
+            Some((follows(members, &guess, true)?, guess))
+        });
+        let (_, guess) = refined.max_by(|left, right| left.0.total_cmp(&right.0))?;
+        Shared::of(members, guess)
+    }
+
+    /// As it is on the grid.
+    pub(super) fn as_it_is(self, members: &[&Member<'_>]) -> Option<Shared> {
+        Shared::of(members, self.starts.into_iter().next()?.1)
+    }
 }
 
 /// How closely all `members` are followed with `guess`, the closer the more: the logarithm of what is left, so that every muscle counts
@@ -161,8 +192,10 @@ pub(super) fn spread(members: &[&Member<'_>], guess: &CandidateEffect) -> Vec<f6
     let left_out = |index: usize| {
         let others: Vec<&Member<'_>> =
             members.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, member)| *member).collect();
-        let followed = follows(&others, guess, true)?;
-        Some(refined(&others, guess.clone(), followed).shape)
+        let gains = |guess: &CandidateEffect| follows(&others, guess, true);
+        let followed = gains(guess)?;
+        // What one muscle less moves lies near by.
+        Some(descended(guess.clone(), followed, POLISH, POLISH_ROUNDS, &gains).shape)
     };
     let shapes: Vec<Vec<f64>> = (0..members.len()).filter_map(left_out).collect();
     let n = shapes.len().max(1) as f64;
