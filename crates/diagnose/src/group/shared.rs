@@ -96,7 +96,7 @@ impl OnGrid {
     }
 
     /// As it is on the grid.
-    pub(super) fn as_it_is(self, members: &[&Member<'_>]) -> Option<Shared> {
+    pub(super) fn unrefined(self, members: &[&Member<'_>]) -> Option<Shared> {
         Shared::of(members, self.starts.into_iter().next()?.1)
     }
 }
