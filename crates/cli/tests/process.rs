@@ -188,6 +188,11 @@ fn a_full_standard_output_is_one_line_and_code_2() {
 }
 
 fn a_signal_leaves_no_file_and_gives_130() {
+    let ignored = Command::new("sh").args(["-c", "kill -s HUP $$; echo alive"]).output().unwrap();
+    if !ignored.stdout.is_empty() {
+        eprintln!("skipped: signals are not answered where hang-ups are ignored, as under nohup");
+        return;
+    }
     // All that end a program by themselves and are no fault of its own, but KILL, which nothing can answer.
     let everywhere = ["INT", "TERM", "HUP", "QUIT", "XCPU", "ALRM", "VTALRM", "PROF", "USR1", "USR2", "IO"];
     let on_linux: &[&str] = if cfg!(target_os = "linux") { &["PWR", "STKFLT"] } else { &[] };
