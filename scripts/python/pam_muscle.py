@@ -464,7 +464,8 @@ class MullinsSoftening:
     HALF_PLAY = 5e-4
 
     def __init__(self, values, eq11):
-        self.values, self.largest, self.follower, self.travelled = values, -math.inf, 0.0, 0.0
+        self.values, self.follower = values, 0.0
+        self.largest, self.travelled = values.get("past_contraction", -1.0), values.get("past_travel", 0.0)
 
     def pulls(self, now, base):
         here = now.contraction_ratio
@@ -503,7 +504,7 @@ class FatigueWear:
     REFERENCE_M, HALF_PLAY_M = 100.0, 1.5e-4
 
     def __init__(self, values, eq11):
-        self.values, self.travel_m, self.follower_m = values, 0.0, 0.0
+        self.values, self.travel_m, self.follower_m = values, values.get("past_travel_m", 0.0), 0.0
 
     def pulls(self, now, base):
         if now.step_s == 0.0:

@@ -35,7 +35,8 @@ use pam_diagnosis::diagnose::MAX_EFFECTS;
                   diagnosed one what was held out; with --since, something has changed (changed, ambiguous, unexplained); 2 input or usage, another muscle included."
 )]
 pub(crate) struct Args {
-    /// Recordings to diagnose; - is standard input.
+    /// Recordings to diagnose, in the order in which they were made: what one of them softens or wears may stay so in the
+    /// next; - is standard input.
     #[arg(value_name = "LOG", required_unless_present_any = ["explain", "group"])]
     pub(crate) logs: Vec<PathBuf>,
 

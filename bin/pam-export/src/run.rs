@@ -88,7 +88,7 @@ fn wanted(args: &Args, artifact: &ModelArtifact, console: &Console) -> Augmented
             "{events} of the model's effects happened once, in a recording that it was diagnosed on, and are left out"
         ));
     }
-    model.without_events()
+    model.elsewhere()
 }
 
 /// What is exported.

@@ -167,7 +167,7 @@ fn of_any_recording(artifact: &ModelArtifact, console: &Console) -> AugmentedMod
             "{events} of the model's effects happened once, in a recording that it was diagnosed on, and are left out"
         ));
     }
-    model.without_events()
+    model.elsewhere()
 }
 
 /// Rows for which the model has no force.

@@ -57,7 +57,7 @@ impl Agreement {
         let (fitted, residuals) = evaluate_residuals(estimation, augmented, model.direction)?;
         let base_holdout = evaluate(holdout, base)?;
         let holdout_without_terms = match (&diagnosis.without_terms, &diagnosis.empirical) {
-            (Some(without), _) => evaluate_augmented(holdout, &without.without_events(), model.direction)?.together,
+            (Some(without), _) => evaluate_augmented(holdout, &without.elsewhere(), model.direction)?.together,
             (None, Some(_)) => base_holdout.together,
             (None, None) => None,
         };
@@ -66,7 +66,7 @@ impl Agreement {
             base_holdout,
             holdout_without_terms,
             estimation: fitted,
-            holdout: evaluate_augmented(holdout, &augmented.without_events(), model.direction)?,
+            holdout: evaluate_augmented(holdout, &augmented.elsewhere(), model.direction)?,
             noise_floor_n: noise_floor_n(estimation, augmented.base())?,
             effective_samples: effective_samples(&residuals),
         })

@@ -62,7 +62,9 @@ impl Regressors<'_> {
             .track
             .recordings
             .iter()
-            .map(|range| Part {
+            .enumerate()
+            .map(|(recording, range)| Part {
+                recording,
                 range: range.clone(),
                 seen: split_off(&mut seen, range.len()),
                 base: split_off(&mut base, range.len()),
@@ -75,14 +77,15 @@ impl Regressors<'_> {
     }
 
     fn fill(&self, part: Part<'_>, guesses: &[CandidateEffect], model: &ForceModel) {
-        let Part { range, seen, base, columns, width } = part;
+        let Part { recording, range, seen, base, columns, width } = part;
         let mut delays_s = [0.0; 2];
         for guess in guesses.iter().filter(|guess| guess.effect.role() == Role::Shift) {
             let more_s = guess.effect.delays_s(&guess.shape);
             delays_s = [delays_s[0] + more_s[0], delays_s[1] + more_s[1]];
         }
         shift(seen, &self.track.instants[range.clone()], delays_s);
-        let mut memories = start(guesses, model);
+        let mut memories: Vec<Box<dyn Memory>> =
+            guesses.iter().map(|guess| guess.start_in(recording, model.muscle())).collect();
         let slopes = self.slopes || guesses.iter().any(|guess| guess.effect.uses_slopes());
         let mut last = None;
         for (((now, row), here), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width)).zip(base).zip(range) {
@@ -127,8 +130,8 @@ impl Regressors<'_> {
     pub fn more_columns(&self, sheet: &DesignMatrix, guess: &CandidateEffect, model: &ForceModel) -> Vec<f64> {
         let n = guess.amplitudes().len();
         let mut columns = vec![0.0; self.track.n() * n];
-        for range in &self.track.recordings {
-            let mut memory = guess.effect.start(model.muscle(), &guess.shape);
+        for (recording, range) in self.track.recordings.iter().enumerate() {
+            let mut memory = guess.start_in(recording, model.muscle());
             for at in range.clone() {
                 memory.pulls(&sheet.seen[at], &sheet.base[at], &mut columns[at * n..(at + 1) * n]);
             }
@@ -174,6 +177,7 @@ impl Regressors<'_> {
 
 /// Rows of one recording.
 struct Part<'a> {
+    recording: usize,
     range: Range<usize>,
     seen: &'a mut [Moment],
     base: &'a mut [Base],
@@ -184,10 +188,6 @@ struct Part<'a> {
 /// The first `n` of `slice`, which keeps the others.
 fn split_off<'a, T>(slice: &mut &'a mut [T], n: usize) -> &'a mut [T] {
     slice.split_off_mut(..n).unwrap_or_default()
-}
-
-fn start(guesses: &[CandidateEffect], model: &ForceModel) -> Vec<Box<dyn Memory>> {
-    guesses.iter().map(|guess| guess.effect.start(model.muscle(), &guess.shape)).collect()
 }
 
 #[cfg(test)]

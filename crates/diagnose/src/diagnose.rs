@@ -359,7 +359,7 @@ impl Recordings {
     fn held_n(&self, outcome: &SearchOutcome, direction: Thresholds) -> Result<f64, DiagnoseError> {
         let state = &outcome.found.best.state;
         let terms = self.rig.iter().cloned().chain(state.terms()).collect();
-        let augmented = AugmentedModel::new(state.model.clone(), terms).without_events();
+        let augmented = AugmentedModel::new(state.model.clone(), terms).elsewhere();
         let together = evaluate_augmented(&self.holdout, &augmented, direction)?.together;
         Ok(together.map_or(0.0, |together| together.rmse_all_n))
     }

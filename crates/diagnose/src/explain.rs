@@ -68,7 +68,7 @@ pub fn signature(effect: &'static dyn Effect) -> Signature {
         None => vec![0.0, 0.5 * path.duration_s],
     };
     let along = |amplitudes: Vec<f64>| {
-        let term = Term { effect, shape: shape.clone(), amplitudes };
+        let term = Term::new(effect, shape.clone(), amplitudes);
         forces_n(&AugmentedModel::new(base.clone(), vec![term]), &instants)
     };
     let n_amplitudes = effect.amplitudes().len();

@@ -63,7 +63,7 @@ impl Given {
     pub(crate) fn of(question: &DiagnosisProblem<'_>, holdout: &[Prepared]) -> Result<Self, DiagnoseError> {
         let DiagnosisProblem { estimation, model, .. } = question;
         // Events belong to the recordings of another diagnosis.
-        let given = model.augmented_model().without_events();
+        let given = model.augmented_model().elsewhere();
         let on_estimation = evaluate_augmented(estimation, &given, model.direction)?;
         let on_holdout = evaluate_augmented(holdout, &given, model.direction)?;
         let (refit, shifts) = refitted(question, &given)?;

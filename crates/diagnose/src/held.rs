@@ -38,7 +38,7 @@ pub(crate) struct Held {
 /// # Errors
 /// [`DiagnoseError::Recording`] where samples cannot be read back, or the model has no force for one.
 pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held, DiagnoseError> {
-    let model = diagnosis.augmented.without_events();
+    let model = diagnosis.augmented.elsewhere();
     let fitted: Vec<Trace> =
         diagnosis.estimation.iter().map(|prepared| trace(prepared, model.base())).collect::<Result<_, _>>()?;
     let coverage = Coverage::of(&fitted);

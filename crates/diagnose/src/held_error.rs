@@ -20,7 +20,7 @@ pub(crate) struct Left {
 impl Left {
     /// Of `model`, without what happened once.
     pub(crate) fn of(model: &AugmentedModel, held: &Track) -> Self {
-        let modelled_n = force_n(held, &model.without_events());
+        let modelled_n = force_n(held, &model.elsewhere());
         let each = held.recordings.iter().map(|range| {
             let (mut squares, mut count) = (0.0, 0.0);
             for at in range.clone().filter(|&at| held.instants[at].force_n.is_finite()) {

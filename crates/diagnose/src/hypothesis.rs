@@ -1,6 +1,11 @@
 //! A hypothesis: the base model and some effects with their shapes.
 
-use pam_core::effects::{Amplitude, Effect, Role};
+use std::sync::Arc;
+
+use pam_core::effects::{Amplitude, Base, Effect, Memory, Past, Role};
+use pam_core::muscle::Muscle;
+
+use crate::track::Track;
 
 /// An effect with values for its shape.
 #[derive(Clone)]
@@ -11,8 +16,29 @@ pub struct CandidateEffect {
     pub shape: Vec<f64>,
     /// Which sign its amplitudes may have.
     pub sign: Sign,
-    /// Whether every recording begins with a memory of its own, of what went before; else with none.
-    pub carried: bool,
+    /// What its memory begins every recording with.
+    pub beginning: Beginning,
+}
+
+/// What the memory of an effect begins a recording with.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Beginning {
+    /// Nothing: the muscle was fresh.
+    Fresh,
+    /// Something of its own in every recording, which the fit tells.
+    Own,
+    /// What the recordings before it have left for good: they were made one after the other, as they are given.
+    GoesOn(Arc<Past>),
+}
+
+impl Beginning {
+    /// What of the past is known.
+    pub fn past(&self) -> Past {
+        match self {
+            Self::GoesOn(past) => Past::clone(past),
+            Self::Fresh | Self::Own => Past::default(),
+        }
+    }
 }
 
 /// Which sign the amplitudes of an effect may have.
@@ -43,8 +69,26 @@ impl CandidateEffect {
     }
 
     /// Every beginning that `effect` has to be tried with.
-    pub fn beginnings(effect: &dyn Effect) -> &'static [bool] {
-        if effect.outlasts() { &[false, true] } else { &[false] }
+    pub fn beginnings(effect: &dyn Effect, track: &Track, muscle: &Muscle) -> Vec<Beginning> {
+        let own = effect.outlasts().then_some(Beginning::Own);
+        let goes_on = effect.is_permanent().then(|| Beginning::GoesOn(Arc::new(past(effect, track, muscle))));
+        // In a single recording both are the same, and others are made after it.
+        let fresh = (goes_on.is_none() || track.recordings.len() > 1).then_some(Beginning::Fresh);
+        fresh.into_iter().chain(own).chain(goes_on).collect()
+    }
+
+    /// Whether every recording begins with something of its own.
+    pub fn has_own_beginnings(&self) -> bool {
+        self.beginning == Beginning::Own
+    }
+
+    /// Its memory at the beginning of recording `index`.
+    pub fn start_in(&self, index: usize, muscle: &Muscle) -> Box<dyn Memory> {
+        let mut memory = self.effect.start(muscle, &self.shape);
+        if let Beginning::GoesOn(past) = &self.beginning {
+            memory.go_on(past.before(index));
+        }
+        memory
     }
 
     /// Ranges of its amplitudes.
@@ -68,6 +112,22 @@ impl std::fmt::Debug for CandidateEffect {
     }
 }
 
+/// What the recordings of `track`, one after the other, do to `muscle` for good.
+fn past(effect: &dyn Effect, track: &Track, muscle: &Muscle) -> Past {
+    let shape: Vec<f64> = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
+    let mut unused = vec![0.0; effect.amplitudes().len()];
+    let mut past = Past { began: Vec::new(), after: effect.keeps().iter().map(|kept| kept.fresh).collect() };
+    for range in &track.recordings {
+        let mut memory = effect.start(muscle, &shape);
+        memory.go_on(&past.after);
+        for instant in &track.instants[range.clone()] {
+            memory.pulls(&instant.moment, &Base::default(), &mut unused);
+        }
+        past.began.push(std::mem::replace(&mut past.after, memory.past()));
+    }
+    past
+}
+
 /// Amplitudes of several guesses together.
 pub fn n_amplitudes(guesses: &[CandidateEffect]) -> usize {
     guesses.iter().map(|guess| guess.amplitudes().len()).sum()
@@ -76,4 +136,41 @@ pub fn n_amplitudes(guesses: &[CandidateEffect]) -> usize {
 /// Ranges of the amplitudes of several guesses, in order.
 pub fn ranges(guesses: &[CandidateEffect]) -> Vec<(f64, f64)> {
     guesses.iter().flat_map(CandidateEffect::ranges).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    use pam_core::effects::effect;
+
+    fn past_of(given: &Given, id: &str) -> Past {
+        past(effect(id).expect("an id"), &given.track, &given.muscle)
+    }
+
+    #[test]
+    fn what_one_recording_wears_the_next_begins_with() {
+        let [one, two] = [&["isobaric-triangles"][..], &["isobaric-triangles", "isobaric-triangles"][..]];
+        let (once, twice) =
+            (past_of(&Given::of(one, &[]), "fatigue-wear"), past_of(&Given::of(two, &[]), "fatigue-wear"));
+        assert_eq!((once.began[0][0], twice.began.len() % 2), (0.0, 0));
+        let half = twice.began.len() / 2;
+        assert!(once.after[0] > 0.05 && (twice.began[half][0] - once.after[0]).abs() < 1e-12);
+        assert!((twice.after[0] - 2.0 * once.after[0]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn only_what_is_permanent_goes_on_and_a_single_recording_has_nothing_before_it() {
+        let given = Given::of(&["isobaric-triangles", "multisine"], &[]);
+        let beginnings = |id: &str, given: &Given| {
+            CandidateEffect::beginnings(effect(id).expect("an id"), &given.track, &given.muscle)
+        };
+        assert!(matches!(
+            beginnings("mullins-softening", &given)[..],
+            [Beginning::Fresh, Beginning::Own, Beginning::GoesOn(_)]
+        ));
+        assert_eq!(beginnings("thermal-softening", &given), [Beginning::Fresh, Beginning::Own]);
+        assert_eq!(beginnings("pressure-lag", &given), [Beginning::Fresh]);
+    }
 }

@@ -15,7 +15,7 @@ use pam_core::effects::{AugmentedModel, Effect, Role, Term};
 use rayon::prelude::*;
 
 use crate::design_matrix::Regressors;
-use crate::hypothesis::{CandidateEffect, Sign};
+use crate::hypothesis::{Beginning, CandidateEffect, Sign};
 use crate::state::{Setting, State};
 use crate::tangent::{Tangent, dot, norm};
 use pam_core::shift::shifted;
@@ -77,9 +77,9 @@ pub fn isolability(setting: &Setting<'_>, state: &State, noise_n: f64, n_indepen
         .iter()
         .enumerate()
         .flat_map(|(index, &effect)| {
-            shapes(setting, effect)
-                .into_iter()
-                .map(move |shape| (index, CandidateEffect { effect, shape, sign: Sign::Any, carried: false }))
+            shapes(setting, effect).into_iter().map(move |shape| {
+                (index, CandidateEffect { effect, shape, sign: Sign::Any, beginning: Beginning::Fresh })
+            })
         })
         .collect();
     // Each form with what is left of it, in the order of the catalogue.
@@ -182,7 +182,7 @@ fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess:
     }
     let mut terms = state.terms();
     let before_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms.clone()));
-    terms.push(Term { effect: guess.effect, shape: guess.shape.clone(), amplitudes: Vec::new() });
+    terms.push(Term::new(guess.effect, guess.shape.clone(), Vec::new()));
     let after_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms));
     vec![tangent.left_of(|row| after_n[row] - before_n[row])]
 }

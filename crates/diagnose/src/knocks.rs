@@ -247,7 +247,7 @@ impl InertialTransient {
 
     /// The effect with its values.
     pub fn term(&self) -> Term {
-        Term { effect: Self::effect(), shape: vec![self.mount_hz], amplitudes: vec![self.mass_kg] }
+        Term::new(Self::effect(), vec![self.mount_hz], vec![self.mass_kg])
     }
 
     /// Its parameters, as an artifact has them.

@@ -47,6 +47,17 @@ fn knocking(knocks: &InertialTransient) -> NamedEffect {
     }
 }
 
+/// What the muscle has been through when the recordings end, where that goes on in others.
+fn past_entries(guess: &CandidateEffect) -> impl Iterator<Item = ParameterEntry> {
+    guess.effect.keeps().iter().zip(guess.beginning.past().after).map(|(kept, value)| ParameterEntry {
+        name: kept.name.to_owned(),
+        value,
+        unit: kept.unit.to_owned(),
+        stderr: None,
+        status: ParameterStatus::Fixed,
+    })
+}
+
 pub(crate) fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evidence {
     let improved = without.log_ratios(with).filter(|&ratio| ratio > 0.0).count();
     Evidence {
@@ -75,7 +86,8 @@ pub(crate) fn named(
     for (index, guess) in state.guesses.iter().enumerate() {
         let page = guess.effect.page();
         let errors = shape_errors(setting, state, index, correlated);
-        let parameters = entries(state, index, first, &errors, uncertainty);
+        let mut parameters = entries(state, index, first, &errors, uncertainty);
+        parameters.extend(past_entries(guess));
         first += guess.amplitudes().len();
         let alternatives = alternatives(found, index);
         let separating_test = alternatives

@@ -255,15 +255,8 @@ impl Nuisance {
         let (even, odd) = (columns(Group::EvenMap)?, columns(Group::OddMap)?);
         let [(lowest_pa, highest_pa), (least, most)] =
             MAPPED.map(|kind| range(coordinates.of_kind(kind), &track.counted));
-        Some(Term {
-            effect: effect(MAP_ID)?,
-            shape: vec![lowest_pa, highest_pa, least, most],
-            amplitudes: even
-                .clone()
-                .chain(odd.clone())
-                .map(|column| coefficients[column] * self.scales[column])
-                .collect(),
-        })
+        let amplitudes = even.clone().chain(odd.clone()).map(|column| coefficients[column] * self.scales[column]);
+        Some(Term::new(effect(MAP_ID)?, vec![lowest_pa, highest_pa, least, most], amplitudes.collect()))
     }
 }
 

@@ -30,7 +30,7 @@ fn seen(setting: &Setting<'_>, state: &State, sentence: &Sentence) -> [f64; 2] {
 /// `terms` of a state with its `sentences` in the place of what only this run knows.
 pub(crate) fn terms(terms: Vec<Term>, sentences: &[Option<Sentence>]) -> Vec<Term> {
     let written = |(term, sentence): (Term, &Option<Sentence>)| match sentence.as_ref().map(own) {
-        Some(Ok(effect)) => Term { effect, shape: Vec::new(), amplitudes: term.amplitudes },
+        Some(Ok(effect)) => Term::new(effect, Vec::new(), term.amplitudes),
         _ => term,
     };
     terms.into_iter().zip(sentences).map(written).collect()
@@ -51,7 +51,7 @@ pub(crate) fn entry(entry: EffectEntry, sentence: &Option<Sentence>, n_shapes: u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hypothesis::{CandidateEffect, Sign};
+    use crate::hypothesis::{Beginning, CandidateEffect, Sign};
     use crate::rehearsal::tests::Given;
 
     use pam_core::effects::sentence::{Curve, custom_effects};
@@ -69,7 +69,7 @@ mod tests {
         let effect = custom_effects(text).expect("effects")[0];
         let given = Given::of(&["isobaric-triangles", "multisine"], &[]);
         let setting = given.setting();
-        let guess = CandidateEffect { effect, shape: vec![0.06], sign: Sign::Any, carried: false };
+        let guess = CandidateEffect { effect, shape: vec![0.06], sign: Sign::Any, beginning: Beginning::Fresh };
         let state = setting.fit(vec![guess], &given.start, &given.model).expect("a fit");
         let sentences = sentences(&setting, &state);
         let sentence = sentences[0].clone().expect("a sentence");

@@ -98,10 +98,8 @@ mod tests {
 
     #[test]
     fn a_pull_that_is_taken_off_leaves_the_force_of_the_muscle() {
-        let term = |id: &str, shape: &[f64], amplitudes: &[f64]| Term {
-            effect: effect(id).expect("an id"),
-            shape: shape.to_vec(),
-            amplitudes: amplitudes.to_vec(),
+        let term = |id: &str, shape: &[f64], amplitudes: &[f64]| {
+            Term::new(effect(id).expect("an id"), shape.to_vec(), amplitudes.to_vec())
         };
         let plain = Given::of(&["multisine"], &[]);
         let heavy = Given::of(&["multisine"], &[("inertia", &[200.0], &[3.0])]);
@@ -115,7 +113,7 @@ mod tests {
         let mut given =
             Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[("pressure-lag", &[0.15], &[])]);
         given.disturb();
-        let lag = Term { effect: effect("pressure-lag").expect("an id"), shape: vec![0.11], amplitudes: Vec::new() };
+        let lag = Term::new(effect("pressure-lag").expect("an id"), vec![0.11], Vec::new());
         let track = without(given.track.clone(), &[lag], &given.model);
         let of_the_rig = CATALOGUE.iter().filter(|effect| is_of_the_rig(**effect));
         let excluded = of_the_rig.map(|effect| effect.page().id.to_owned()).collect();
@@ -132,7 +130,7 @@ mod tests {
     #[test]
     fn nothing_known_leaves_the_track_as_it_is_and_a_lag_changes_its_pressures() {
         let given = Given::of(&["multisine"], &[]);
-        let lag = Term { effect: effect("pressure-lag").expect("an id"), shape: vec![0.1], amplitudes: Vec::new() };
+        let lag = Term::new(effect("pressure-lag").expect("an id"), vec![0.1], Vec::new());
         assert_eq!(apart(&without(given.track.clone(), &[], &given.model), &given.track), (0.0, 0.0));
         assert!(apart(&without(given.track.clone(), &[lag], &given.model), &given.track).0 > 100.0);
     }

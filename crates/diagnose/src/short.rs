@@ -97,13 +97,13 @@ mod tests {
         let creep = |amplitudes: [f64; 3]| {
             let effect = effect("pressure-creep").unwrap();
             let shape = effect.shape().iter().map(|shape| if shape.name == "time_constant_s" { 14.0 } else { 0.0 });
-            shortest_s(&Term { effect, shape: shape.collect(), amplitudes: amplitudes.to_vec() })
+            shortest_s(&Term::new(effect, shape.collect(), amplitudes.to_vec()))
         };
         assert_eq!(creep([0.1, 0.0, 0.2]), Some(14.0));
         assert_eq!(creep([0.0, -0.1, 0.2]), Some(140.0));
         assert_eq!(creep([0.0, 0.0, 0.2]), Some(1400.0));
         assert_eq!(creep([0.0; 3]), None);
         let lag = effect("pressure-lag").unwrap();
-        assert_eq!(shortest_s(&Term { effect: lag, shape: vec![0.1], amplitudes: vec![1.0] }), None);
+        assert_eq!(shortest_s(&Term::new(lag, vec![0.1], vec![1.0])), None);
     }
 }

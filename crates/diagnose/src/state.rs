@@ -86,6 +86,7 @@ impl State {
                 .zip(values.by_ref())
                 .map(|(amplitude, value)| value.clamp(amplitude.range.0, amplitude.range.1))
                 .collect(),
+            past: guess.beginning.past(),
         };
         self.guesses.iter().map(term).collect()
     }
@@ -312,7 +313,7 @@ impl<'a> Setting<'a> {
         let rows = self.ground().more_columns(&state.sheet, guess, &state.model);
         let mut limits = ranges(&state.guesses);
         limits.extend(guess.ranges());
-        let beginnings = if guess.carried { self.beginnings(state, guess) } else { Vec::new() };
+        let beginnings = if guess.has_own_beginnings() { self.beginnings(state, guess) } else { Vec::new() };
         limits.extend(beginnings.iter().map(|_| before(guess)));
         (self.beside_rows(state, rows, &beginnings), limits)
     }

@@ -47,7 +47,7 @@ pub struct Trace {
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn traces(diagnosis: &Diagnosis, most: usize) -> Result<Vec<Trace>, IdentifyError> {
-    let without_events = diagnosis.augmented.without_events();
+    let elsewhere = diagnosis.augmented.elsewhere();
     let walk = |model: &AugmentedModel, recordings: &[Prepared]| -> Result<Vec<Walked>, IdentifyError> {
         recordings
             .par_iter()
@@ -56,7 +56,7 @@ pub fn traces(diagnosis: &Diagnosis, most: usize) -> Result<Vec<Trace>, Identify
             .collect()
     };
     let estimation = walk(&diagnosis.augmented, &diagnosis.estimation)?;
-    let holdout = walk(&without_events, &diagnosis.holdout)?;
+    let holdout = walk(&elsewhere, &diagnosis.holdout)?;
     let limits = moving_limits(moments(&estimation));
     let held_limits = moving_limits(moments(&holdout));
     let trace = |(prepared, walked): (&Prepared, &Walked), held_out, limits| Trace {

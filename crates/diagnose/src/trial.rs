@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use pam_core::effects::{Effect, Kind, Seen, Shape};
 use rayon::prelude::*;
 
-use crate::hypothesis::{CandidateEffect, n_amplitudes};
+use crate::hypothesis::{Beginning, CandidateEffect, n_amplitudes};
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
 use crate::steps;
@@ -100,15 +100,18 @@ pub fn among(
                 Some(shape) => vec![shape.clone()],
                 None => effect.first_shapes(seen),
             };
-            let (signs, beginnings) = (CandidateEffect::signs(effect), CandidateEffect::beginnings(effect));
-            shapes.into_iter().flat_map(move |shape| {
-                signs.iter().flat_map(move |&sign| {
-                    let shape = shape.clone();
-                    let guess =
-                        move |&carried| (index, CandidateEffect { effect, shape: shape.clone(), sign, carried });
-                    beginnings.iter().map(guess)
-                })
-            })
+            let signs = CandidateEffect::signs(effect);
+            let beginnings = CandidateEffect::beginnings(effect, setting.track, setting.muscle);
+            let mut guesses = Vec::new();
+            for shape in &shapes {
+                for &sign in signs {
+                    let guess = |beginning: &Beginning| {
+                        (index, CandidateEffect { effect, shape: shape.clone(), sign, beginning: beginning.clone() })
+                    };
+                    guesses.extend(beginnings.iter().map(guess));
+                }
+            }
+            guesses
         })
         .collect();
     let residuals_n = setting.residuals_n(state);
@@ -127,9 +130,13 @@ pub fn among(
         })
         .collect();
     // Of every beginning the best: the freer one is always nearer to what it was fitted to.
-    let mut best: Vec<Option<(f64, &CandidateEffect)>> = vec![None; 2 * candidates.len()];
+    let mut best: Vec<[Option<(f64, &CandidateEffect)>; 3]> = vec![[None; 3]; candidates.len()];
     for ((index, guess), cost) in jobs.iter().zip(costs) {
-        let best = &mut best[2 * index + usize::from(guess.carried)];
+        let best = &mut best[*index][match guess.beginning {
+            Beginning::Fresh => 0,
+            Beginning::Own => 1,
+            Beginning::GoesOn(_) => 2,
+        }];
         if let Some(cost) = cost
             && best.is_none_or(|(lowest, _)| cost < lowest)
         {
@@ -137,7 +144,7 @@ pub fn among(
         }
     }
     let mut found: Vec<(f64, CandidateEffect)> =
-        best.into_iter().flatten().map(|(cost, guess)| (cost, guess.clone())).collect();
+        best.into_iter().flatten().flatten().map(|(cost, guess)| (cost, guess.clone())).collect();
     found.sort_by(|left, right| left.0.total_cmp(&right.0));
     let refined: Vec<(f64, CandidateEffect)> = found
         .par_iter()
@@ -155,10 +162,10 @@ pub fn among(
                 return Some(Trial { guess, mean_square, held_out: before.clone(), log_ratio: 0.0 });
             }
             let (held_out, is_pressed) = weigh(setting, state, &guess)?;
-            let beginnings = if guess.carried { setting.track.recordings.len() } else { 0 };
+            let beginnings = if guess.has_own_beginnings() { setting.track.recordings.len() } else { 0 };
             let kept = share_kept(&guess, is_pressed, beginnings);
             let mut evidence = before.log_ratio(&held_out);
-            if guess.carried {
+            if guess.has_own_beginnings() {
                 // What only the beginnings gain says that recordings differ, not by what.
                 let begun = setting.weigh_beginnings(state, &guess)?;
                 evidence = evidence.min(begun.log_ratio(&held_out));

@@ -12,7 +12,8 @@ use pam_core::shift::shifted;
 
 use crate::coordinates::Coordinates;
 use crate::error::DiagnoseError;
-use crate::hypothesis::CandidateEffect;
+use crate::held_error::Left;
+use crate::hypothesis::{Beginning, CandidateEffect};
 use crate::nuisance::Nuisance;
 use crate::problem::DiagnosisProblem;
 use crate::search::Found;
@@ -81,7 +82,7 @@ fn without_denied(
     let held = question.setting(heldout, &beside);
     let mut strongest_denied = None;
     loop {
-        let shares = shares(&held, &found);
+        let shares = shares(&setting, &held, &found);
         let Some(Denied { index, too_large, .. }) = denied(&found, &shares) else {
             for (taken, share) in found.taken.iter_mut().zip(&shares) {
                 taken.is_confirmed = share.is_some_and(Share::shows);
@@ -165,7 +166,8 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
         let too_large = share.is_some_and(|share| share.is_too_large(guess.effect));
         let is_denied = share.is_some_and(|share| share.denies(guess.effect));
         let tells = share.is_some_and(|share| share.error < TELLS);
-        let stands = stands || !tells && !guess.effect.outlasts() && evidence(found, index) > STANDS_ALONE;
+        let is_open = !guess.effect.outlasts() || matches!(guess.beginning, Beginning::GoesOn(_));
+        let stands = stands || !tells && is_open && evidence(found, index) > STANDS_ALONE;
         let is_unseen = !stands && share.is_none_or(|share| share.least() <= 0.0);
         // What is denied goes before what is only not seen.
         let most = match share {
@@ -181,12 +183,29 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
 }
 
 /// With how much of its size each effect of `found` is there on `held`; none where nothing can be said.
-fn shares(held: &Setting<'_>, found: &Found) -> Vec<Option<Share>> {
+fn shares(setting: &Setting<'_>, held: &Setting<'_>, found: &Found) -> Vec<Option<Share>> {
     let state = &found.best.state;
     let of = |(index, guess): (usize, &CandidateEffect)| {
+        if matches!(guess.beginning, Beginning::GoesOn(_)) {
+            return foretold(setting, held.track, state, index);
+        }
         is_judged(guess.effect).then(|| share(held, state, index)).flatten()
     };
     state.guesses.iter().enumerate().map(of).collect()
+}
+
+/// The share of effect `index`, which goes on from recording to recording: what was held out comes after it, and shows nothing of it
+/// but what the base would be without it. All of it where `held` is foretold better with it, its opposite where without it.
+fn foretold(setting: &Setting<'_>, held: &Track, state: &State, index: usize) -> Option<Share> {
+    let without = setting.fit_without(state, index)?;
+    let left = |state: &State| Left::of(&AugmentedModel::new(state.model.clone(), state.terms()), held);
+    let (with, without) = (left(state), left(&without));
+    let value = match (without.is_bettered_by(&with), with.is_bettered_by(&without)) {
+        (true, _) => 1.0,
+        (false, true) => -1.0,
+        (false, false) => return None,
+    };
+    Some(Share { value, error: 0.0 })
 }
 
 /// Whether other recordings can tell of `effect`: an event is none of theirs, and in the place of a smooth static effect the static
@@ -239,10 +258,10 @@ impl Share {
 
 /// The share of effect `index` on what was held out; none where nothing can be said.
 fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
-    let whole_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), state.terms()).without_events());
+    let whole_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), state.terms()).elsewhere());
     let mut others = state.terms();
     others.remove(index);
-    let rest_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), others).without_events());
+    let rest_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), others).elsewhere());
     let base_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), Vec::new()));
     // What went before a recording is not known.
     let guess = &state.guesses[index];
@@ -299,14 +318,14 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
 pub(crate) fn force_n(track: &Track, model: &AugmentedModel) -> Vec<f64> {
     let delays_s = model.delays_s();
     let mut forces_n = Vec::with_capacity(track.n());
-    for range in &track.recordings {
+    for (recording, range) in track.recordings.iter().enumerate() {
         let instants = &track.instants[range.clone()];
         let moments: Vec<Moment> = if delays_s == [0.0; 2] {
             instants.iter().map(|instant| instant.moment).collect()
         } else {
             shifted(instants, delays_s)
         };
-        let mut memory = model.start();
+        let mut memory = model.start_in(recording);
         forces_n.extend(moments.into_iter().map(|moment| memory.force_n(model, moment)));
     }
     forces_n

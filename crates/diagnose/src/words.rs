@@ -51,6 +51,11 @@ impl Numbers {
             (false, _) => format!(" and {term}"),
             (true, _) => format!(", a smooth static map and {term}"),
         };
+        let goes_on = |named: &NamedEffect| {
+            let keeps = effect(&named.id).map_or(&[][..], |effect| effect.keeps());
+            keeps.iter().any(|kept| named.parameters.iter().any(|parameter| parameter.name == kept.name))
+        };
+        let on = if effects.iter().any(goes_on) { ", going on from one recording to the next as given," } else { "" };
         if self.after_n > self.before_n {
             // A fit lets such a memory go on from recording to recording.
             let outlasts = |named: &NamedEffect| effect(&named.id).is_some_and(|effect| effect.outlasts());
@@ -59,10 +64,13 @@ impl Numbers {
             } else {
                 ""
             };
-            return format!("with that{map} the RMSE rises from {:.2} to {:.2} N{why}", self.before_n, self.after_n);
+            return format!(
+                "with that{map}{on} the RMSE rises from {:.2} to {:.2} N{why}",
+                self.before_n, self.after_n
+            );
         }
         format!(
-            "with that{map} the RMSE falls from {:.2} to {:.2} N, {:.0} % of the excess over the noise floor of {:.2} N",
+            "with that{map}{on} the RMSE falls from {:.2} to {:.2} N, {:.0} % of the excess over the noise floor of {:.2} N",
             self.before_n,
             self.after_n,
             100.0 * (1.0 - self.share_left()),

@@ -18,5 +18,5 @@ pub(crate) fn nominal_model() -> ForceModel {
 /// It with an effect of the catalogue.
 pub(crate) fn with_effect(id: &str, shape: &[f64], amplitudes: &[f64]) -> AugmentedModel {
     let effect = effect(id).unwrap_or_else(|| panic!("no effect {id}"));
-    AugmentedModel::new(nominal_model(), vec![Term { effect, shape: shape.to_vec(), amplitudes: amplitudes.to_vec() }])
+    AugmentedModel::new(nominal_model(), vec![Term::new(effect, shape.to_vec(), amplitudes.to_vec())])
 }

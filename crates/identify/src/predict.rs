@@ -81,7 +81,7 @@ pub fn walk_moments(
 ) -> io::Result<()> {
     let Prepared { recording, direction, .. } = prepared;
     let has_force = recording.samples.has_force();
-    let mut memory = model.start();
+    let mut memory = model.start_in(index);
     let mut before_n = None;
     let mut seen = |now: Moment| {
         let seen_n = if has_force {

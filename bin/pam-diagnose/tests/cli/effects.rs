@@ -10,7 +10,7 @@ use crate::desk::{Desk, HELD, LOGS, MODEL_SCHEMA, SCHEMA};
 /// What the programs behind the diagnosis predict of a held-out recording, root mean square of the residual in N.
 fn predicted_rmse_n(desk: &Desk, model: &ModelArtifact) -> f64 {
     let prepared = pam_identification::predict::prepare(desk.recording("multisine.csv"), model).unwrap();
-    let augmented = model.augmented_model().without_events();
+    let augmented = model.augmented_model().elsewhere();
     let found = pam_identification::evaluate::evaluate_augmented(&[prepared], &augmented, model.direction).unwrap();
     found.together.unwrap().rmse_n
 }

@@ -155,13 +155,15 @@ pub(crate) fn model(effects: &[&dyn Effect]) -> String {
     }
     let direction =
         "\"direction\": {\n  \"held_m\": 2e-5, \"turn_m\": 3e-5, \"standstill\": {\"slides\": {\"over_pa\": 40000.0}},";
-    let entries: Vec<String> = effects.iter().map(|effect| entry(*effect)).collect();
+    // Beside others an effect has a past, alone it has none.
+    let entries: Vec<String> = effects.iter().map(|effect| entry(*effect, effects.len() > 1)).collect();
     text.replace("\"direction\": {", direction)
         .replace("\"effects\": []", &format!("\"effects\": [{}]", entries.join(", ")))
 }
 
-/// An effect with parameters inside their ranges: shapes from the middle of the grid, amplitudes of a size that shows.
-fn entry(effect: &dyn Effect) -> String {
+/// An effect with parameters inside their ranges: shapes from the middle of the grid, amplitudes of a size that shows; with a past
+/// that what it keeps for good begins with, or without.
+fn entry(effect: &dyn Effect, has_past: bool) -> String {
     let rims = [
         ("lowest_pa", 1e5),
         ("highest_pa", 2e5),
@@ -182,8 +184,10 @@ fn entry(effect: &dyn Effect) -> String {
         let share = if amplitude.name.ends_with("_n") && effect.page().id == "static-map" { 2e-4 } else { 0.03 };
         (amplitude.name, share / (1.0 + index as f64) * amplitude.range.1, amplitude.unit)
     });
+    let keeps = effect.keeps().iter().filter(|_| has_past).map(|kept| (kept.name, 0.15, kept.unit));
     let parameters: Vec<String> = shapes
         .chain(amplitudes)
+        .chain(keeps)
         .map(|(name, value, unit)| {
             format!(
                 "{{\"name\": \"{name}\", \"value\": {value:?}, \"unit\": \"{unit}\", \"stderr\": null, \"status\": \"fitted\"}}"

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::model::ParameterEntry;
 use crate::effects::sentence::{EMPIRICAL, own};
-use crate::effects::{self, CATALOGUE, Effect, Sentence, Term};
+use crate::effects::{self, CATALOGUE, Effect, Past, Sentence, Term};
 use crate::spelling::number;
 
 /// An effect beyond eq. 11.
@@ -17,7 +17,8 @@ pub struct EffectEntry {
     /// What an empirical term is, but for its amplitudes; none for an effect of the catalogue.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sentence: Option<Sentence>,
-    /// Its shape and its amplitudes, in SI, under the names and in the units of the catalogue.
+    /// Its shape and its amplitudes, in SI, under the names and in the units of the catalogue; behind them what the muscle has
+    /// been through, where the effect keeps that for good.
     pub parameters: Vec<ParameterEntry>,
 }
 
@@ -44,7 +45,11 @@ impl EffectEntry {
         let effect = self.effect()?;
         let shapes = effect.shape().iter().map(|shape| (shape.name, shape.unit, shape.range));
         let amplitudes = effect.amplitudes().iter().map(|amplitude| (amplitude.name, amplitude.unit, amplitude.range));
-        let expected: Vec<_> = shapes.chain(amplitudes).collect();
+        // What the muscle has been through stands there wholly or not at all.
+        let keeps = effect.keeps().iter().map(|kept| (kept.name, kept.unit, kept.range));
+        let is_kept = |entry: &ParameterEntry| effect.keeps().iter().any(|kept| kept.name == entry.name);
+        let keeps = keeps.filter(|_| self.parameters.iter().any(is_kept));
+        let expected: Vec<_> = shapes.chain(amplitudes).chain(keeps).collect();
         if let Some(entry) = self.parameters.iter().find(|entry| expected.iter().all(|(name, ..)| *name != entry.name))
         {
             let names: Vec<&str> = expected.iter().map(|(name, ..)| *name).collect();
@@ -78,7 +83,8 @@ impl EffectEntry {
             }
             values.push(entry.value);
         }
+        let after = values.split_off(effect.shape().len() + effect.amplitudes().len());
         let amplitudes = values.split_off(effect.shape().len());
-        Ok(Term { effect, shape: values, amplitudes })
+        Ok(Term { past: Past { after, ..Past::default() }, ..Term::new(effect, values, amplitudes) })
     }
 }

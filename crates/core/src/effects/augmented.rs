@@ -25,6 +25,31 @@ pub struct Term {
     pub shape: Vec<f64>,
     /// Values of [`Effect::amplitudes`].
     pub amplitudes: Vec<f64>,
+    /// What the muscle has been through.
+    pub past: Past,
+}
+
+/// What a muscle has been through before a recording, as [`Effect::keeps`] lists it; nothing by default.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Past {
+    /// Before each of the recordings that a model was fitted to; empty where nothing was, or where that is not known.
+    pub began: Vec<Vec<f64>>,
+    /// Before any other recording.
+    pub after: Vec<f64>,
+}
+
+impl Past {
+    /// Before recording `index` of those that a model was fitted to, or before others.
+    pub fn before(&self, index: usize) -> &[f64] {
+        self.began.get(index).unwrap_or(&self.after)
+    }
+}
+
+impl Term {
+    /// `effect` in a muscle that has been through nothing.
+    pub fn new(effect: &'static dyn Effect, shape: Vec<f64>, amplitudes: Vec<f64>) -> Self {
+        Self { effect, shape, amplitudes, past: Past::default() }
+    }
 }
 
 impl fmt::Debug for Term {
@@ -106,12 +131,26 @@ impl AugmentedModel {
         &self.terms
     }
 
-    /// A memory at the beginning of a recording or a simulation.
+    /// A memory at the beginning of a simulation, or of a recording that the model was not fitted to.
     pub fn start(&self) -> AugmentedMemory {
+        self.start_after(|past| &past.after)
+    }
+
+    /// A memory at the beginning of recording `index` of those that the model was fitted to.
+    pub fn start_in(&self, index: usize) -> AugmentedMemory {
+        self.start_after(|past| past.before(index))
+    }
+
+    fn start_after(&self, past: impl Fn(&Past) -> &[f64]) -> AugmentedMemory {
         let muscle = self.base.muscle();
         let n_columns = self.terms.iter().map(|term| term.amplitudes.len()).max().unwrap_or(0);
+        let begun = |term: &Term| {
+            let mut memory = term.effect.start(muscle, &term.shape);
+            memory.go_on(past(&term.past));
+            memory
+        };
         AugmentedMemory {
-            memories: self.terms.iter().map(|term| term.effect.start(muscle, &term.shape)).collect(),
+            memories: self.terms.iter().map(begun).collect(),
             columns: vec![0.0; n_columns],
             is_cut: false,
         }
@@ -161,9 +200,12 @@ impl AugmentedModel {
         beside.map(|term| term.effect.page().id).collect()
     }
 
-    /// The same without events, which happened once and in no other recording.
-    pub fn without_events(&self) -> Self {
-        self.with(|kind| kind != Kind::Event)
+    /// The same for other recordings than those it was fitted to: without events, which happened once, and after all that the
+    /// muscle was through in them.
+    pub fn elsewhere(&self) -> Self {
+        let mut other = self.with(|kind| kind != Kind::Event);
+        other.terms.iter_mut().for_each(|term| term.past.began.clear());
+        other
     }
 
     fn with(&self, wanted: impl Fn(Kind) -> bool) -> Self {

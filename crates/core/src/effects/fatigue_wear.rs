@@ -5,7 +5,7 @@
 //! ```
 
 use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use super::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
@@ -43,8 +43,8 @@ impl Effect for FatigueWear {
         true
     }
 
-    fn is_permanent(&self) -> bool {
-        true
+    fn keeps(&self) -> &'static [Kept] {
+        &[Kept { name: "past_travel_m", unit: "m", range: (0.0, 1e9), fresh: 0.0 }]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
@@ -54,13 +54,23 @@ impl Effect for FatigueWear {
 
 struct State {
     exponent: f64,
-    /// Travel since the recording began, that in gaps left out.
+    /// Travel so far, that in gaps left out.
     travel_m: f64,
     /// Behind the slide by up to half the play.
     follower_m: f64,
 }
 
 impl Memory for State {
+    fn past(&self) -> Vec<f64> {
+        vec![self.travel_m]
+    }
+
+    fn go_on(&mut self, past: &[f64]) {
+        if let &[travel_m] = past {
+            self.travel_m = travel_m;
+        }
+    }
+
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
         if now.step_s == 0.0 {
             self.follower_m = now.slide_m;
@@ -89,7 +99,7 @@ static PAGE: Page = Page {
         Symbol { symbol: "x", unit: "m", meaning: "travel of the braid; counted outside a play of 0.3 mm" },
         Symbol { symbol: "F_gas", unit: "N", meaning: "force of the gas in eq. 11" },
     ],
-    validity: "Far from failure; the travel before the recording counts as none.",
+    validity: "Far from failure; the travel before the first recording counts as none.",
     source: "Klute and Hannaford (1998), \"Fatigue characteristics of McKibben artificial muscle actuators\", IROS; \
              Durante (2021) for straight-fibre muscles",
     signature: "The residual falls with the count of cycles and never returns; it is a share of the gas force, so larger \
@@ -148,6 +158,9 @@ mod tests {
         assert!(cycled(&mut *memory, 1.4e-4, 100_000).abs() < 1e-12);
         let mut memory = FatigueWear.start(&nominal(), &[0.5]);
         let before_n = cycled(&mut *memory, 0.05, 100);
+        let mut next = FatigueWear.start(&nominal(), &[0.5]);
+        next.go_on(&memory.past());
+        assert!((pull(&mut *next, &still(), &base())[0] - before_n).abs() < 1e-12);
         let after_gap = Moment { slide_m: 0.0, ..still() };
         assert!((pull(&mut *memory, &after_gap, &base())[0] - before_n).abs() < 1e-12);
     }

@@ -47,7 +47,7 @@ mod threshold_pressure;
 mod viscoelastic_relaxation;
 mod viscous_damping;
 
-pub use augmented::{AugmentedMemory, AugmentedModel, Term};
+pub use augmented::{AugmentedMemory, AugmentedModel, Past, Term};
 pub use catalogue::{CATALOGUE, NAMELESS, effect};
 pub use inertia::Mount;
 pub use moment::{Base, Moment};
@@ -109,6 +109,19 @@ pub struct Amplitude {
     pub unit: &'static str,
     /// Lowest and highest value that physics allows.
     pub range: (f64, f64),
+}
+
+/// Something that a memory keeps for good, whatever rests between recordings; SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Kept {
+    /// Name in artifacts: `past_travel_m`.
+    pub name: &'static str,
+    /// Unit; `1` where it has none.
+    pub unit: &'static str,
+    /// Lowest and highest value that a muscle may have of it.
+    pub range: (f64, f64),
+    /// Its value before anything was done to the muscle.
+    pub fresh: f64,
 }
 
 /// What the recordings cover, for grids that depend on it; SI.
@@ -204,9 +217,14 @@ pub trait Effect: Sync {
         false
     }
 
+    /// What its memory keeps for good, in the order of [`Memory::past`].
+    fn keeps(&self) -> &'static [Kept] {
+        &[]
+    }
+
     /// Whether what it has changed stays: it comes to its end, and recordings after that show nothing of it.
     fn is_permanent(&self) -> bool {
-        false
+        !self.keeps().is_empty()
     }
 
     /// Whether its pull needs the slopes of [`Base`], which cost four more evaluations of eq. 11.
@@ -240,6 +258,14 @@ impl fmt::Debug for dyn Effect {
 /// At the first moment of a recording a memory is settled. A gap (`step_s == 0`) is crossed: what fades with time has gone on,
 /// what slides has come straight from where it was.
 pub trait Memory: Send {
+    /// Values of what it keeps for good, as [`Effect::keeps`] lists them.
+    fn past(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Takes over what an earlier memory of the same effect has kept, before its first moment.
+    fn go_on(&mut self, _past: &[f64]) {}
+
     /// Changes pressure or length from what the channels say to what the muscle sees.
     fn sees(&mut self, _now: &mut Moment) {}
 

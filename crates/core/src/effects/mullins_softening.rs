@@ -6,7 +6,7 @@
 //! ```
 
 use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use super::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
 use crate::muscle::Muscle;
 
@@ -29,8 +29,8 @@ impl Effect for MullinsSoftening {
 
     fn shape(&self) -> &'static [Shape] {
         &[
-            Shape { name: "softening_contraction", unit: "1", range: (3e-3, 0.3), grid: &[0.01, 0.03, 0.1] },
-            Shape { name: "settling_travel", unit: "1", range: (0.02, 5.0), grid: &[0.2, 0.8] },
+            Shape { name: "softening_contraction", unit: "1", range: (3e-3, IN_PROPORTION), grid: &[0.01, 0.03, 0.1] },
+            Shape { name: "settling_travel", unit: "1", range: (SETTLES_AT_ONCE, 5.0), grid: &[0.2, 0.8] },
         ]
     }
 
@@ -41,35 +41,59 @@ impl Effect for MullinsSoftening {
         ]
     }
 
+    /// Rubber that settles within its first stroke was stretched for the first time; a softening in proportion to the distance from
+    /// the largest contraction is one of its published forms.
+    fn may_end(&self, index: usize, end: f64) -> bool {
+        [(0, IN_PROPORTION), (1, SETTLES_AT_ONCE)].contains(&(index, end))
+    }
+
     fn outlasts(&self) -> bool {
         true
     }
 
-    fn is_permanent(&self) -> bool {
-        true
+    fn keeps(&self) -> &'static [Kept] {
+        &[
+            Kept { name: "past_contraction", unit: "1", range: (NEVER, 0.6), fresh: NEVER },
+            Kept { name: "past_travel", unit: "1", range: (0.0, 1e9), fresh: 0.0 },
+        ]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         let &[softening_contraction, settling_travel] = shape else { unreachable!("two shape parameters") };
-        let largest = f64::NEG_INFINITY;
-        Box::new(State { softening_contraction, settling_travel, largest, follower: 0.0, travelled: 0.0 })
+        Box::new(State { softening_contraction, settling_travel, largest: NEVER, follower: 0.0, travelled: 0.0 })
     }
 }
 
 struct State {
     softening_contraction: f64,
     settling_travel: f64,
-    /// Largest contraction of the recording; gaps do not heal the rubber.
+    /// Largest contraction so far; gaps do not heal the rubber.
     largest: f64,
     /// Contraction behind that of the muscle by up to half the play, and the travel of it; that in gaps is left out.
     follower: f64,
     travelled: f64,
 }
 
+/// A contraction that no muscle softens over: below it the softening is in proportion.
+const IN_PROPORTION: f64 = 0.3;
+/// Travel of the contraction ratio that is less than a stroke.
+const SETTLES_AT_ONCE: f64 = 0.02;
+/// Largest contraction of rubber that nothing was done to: no muscle is twice as long as at rest.
+const NEVER: f64 = -1.0;
 /// Half the play in the count of travel, in contraction; noise at rest stays inside it.
 const HALF_PLAY: f64 = 5e-4;
 
 impl Memory for State {
+    fn past(&self) -> Vec<f64> {
+        vec![self.largest, self.travelled]
+    }
+
+    fn go_on(&mut self, past: &[f64]) {
+        if let &[largest, travelled] = past {
+            (self.largest, self.travelled) = (largest, travelled);
+        }
+    }
+
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
         self.largest = self.largest.max(now.contraction_ratio);
         let below = (self.largest - now.contraction_ratio) / self.softening_contraction;
@@ -110,21 +134,17 @@ static PAGE: Page = Page {
             unit: "N",
             meaning: "force of a bladder of latex, C₁₀ + C₀₁ = 0.22 MPa, whatever the fitted bladder is",
         },
-        Symbol { symbol: "ε_m", unit: "1", meaning: "largest contraction since the recording began" },
+        Symbol { symbol: "ε_m", unit: "1", meaning: "largest contraction so far" },
         Symbol { symbol: "e", unit: "1", meaning: "softening over the first cycles, in units of f; 0.02 to 0.3" },
         Symbol {
             symbol: "s_c",
             unit: "1",
             meaning: "travel of the contraction ratio in which 63 % of that are there: a few cycles, 0.2 to 3",
         },
-        Symbol {
-            symbol: "s",
-            unit: "1",
-            meaning: "that travel since the recording began, counted outside a play of 0.001",
-        },
+        Symbol { symbol: "s", unit: "1", meaning: "that travel so far, counted outside a play of 0.001" },
     ],
-    validity: "A recording that begins with rubber fresh or rested for a day; what earlier recordings have softened \
-               already does not show. No recovery within hours.",
+    validity: "Rubber that is fresh or rested for a day when the first recording begins, and softened by one recording for \
+               the next, or fresh in every one: whichever the recordings show. No recovery within hours.",
     source: "Mullins (1948); Ogden and Roxburgh (1999), Proc. Royal Society A 455, simplified to one exponential over the \
              contraction; Diani, Fayolle and Gilormini (2009), European Polymer Journal 45, for the first cycles",
     signature: "The first cycle to each new contraction differs from the second at the same pressure and length, the \
@@ -186,6 +206,21 @@ mod tests {
         assert!((last_n / base().latex_n() - (-2.0_f64).exp_m1()).abs() < 5e-3, "{last_n}");
         // A gap keeps what was travelled and counts nothing.
         assert!((at(0.15, 0.0) - last_n).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_memory_goes_on_from_what_an_earlier_one_has_kept() {
+        let mut first = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        let at = |contraction_ratio, step_s| Moment { step_s, contraction_ratio, ..still() };
+        pull(&mut *first, &at(0.0, 0.0), &base());
+        let most_n = pull(&mut *first, &at(0.12, 1.0), &base());
+        let mut second = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        second.go_on(&first.past());
+        let there_n = pull(&mut *second, &at(0.12, 0.0), &base());
+        assert!((there_n[0] - most_n[0]).abs() < 1e-12 && (there_n[1] - most_n[1]).abs() < 1e-12);
+        let below_n = |memory: &mut dyn Memory| pull(memory, &at(0.05, 0.0), &base())[0];
+        let mut fresh = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        assert!(below_n(&mut *second) > 10.0 && below_n(&mut *fresh).abs() < 1e-12);
     }
 
     #[test]

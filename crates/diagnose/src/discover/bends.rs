@@ -40,6 +40,7 @@ mod tests {
     use pam_core::effects::sentence::{Curve, Scale};
 
     use super::*;
+    use crate::hypothesis::Beginning;
     use crate::hypothesis::Sign;
 
     fn sentence(driver: Driver, memory: Recall) -> Sentence {
@@ -49,7 +50,7 @@ mod tests {
     #[test]
     fn a_term_bends_the_effect_that_lives_where_it_lives_and_no_other() {
         let effect = effect("stribeck").expect("an effect");
-        let named = [CandidateEffect { effect, shape: Vec::new(), sign: Sign::Any, carried: false }];
+        let named = [CandidateEffect { effect, shape: Vec::new(), sign: Sign::Any, beginning: Beginning::Fresh }];
         assert_eq!(bends(&sentence(Driver::Speed, Recall::None), &named), Some("stribeck"));
         assert_eq!(bends(&sentence(Driver::Contraction, Recall::None), &named), None);
         assert_eq!(bends(&sentence(Driver::Speed, Recall::Lag { time_constant_s: 1.0 }), &named), None);

@@ -71,7 +71,7 @@ pub(super) fn terms(sentences: &[Sentence], nuisance: &Nuisance, state: &State) 
             value.clamp(amplitude.range.0, amplitude.range.1)
         };
         let amplitudes = amplitudes.into_iter().zip(effect.amplitudes()).map(within).collect();
-        Some(Term { effect, shape: Vec::new(), amplitudes })
+        Some(Term::new(effect, Vec::new(), amplitudes))
     };
     sentences.iter().zip(amplitudes(nuisance, &state.fit)).filter_map(term).collect()
 }

@@ -191,8 +191,7 @@ fn settled(members: &[Member<'_>], mut shared: Shared, rivals: Vec<&'static str>
         let ranges = has.guess.amplitudes().iter().map(|amplitude| amplitude.range);
         let amplitudes =
             values.values[n_shapes..].iter().zip(ranges).map(|(value, (low, high))| value.clamp(low, high));
-        has.term =
-            Some(Term { effect: has.guess.effect, amplitudes: amplitudes.collect(), shape: has.guess.shape.clone() });
+        has.term = Some(Term::new(has.guess.effect, has.guess.shape.clone(), amplitudes.collect()));
     }
     let held: Vec<Share> = each.iter().filter_map(|has| has.own.as_ref()?.held).collect();
     Taken { guess: shared.guess, shared: estimate, held: Share::pooled(&held), each, rivals }

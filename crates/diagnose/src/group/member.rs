@@ -9,7 +9,7 @@ use pam_core::effects::{Kind, Seen, Term};
 use crate::coordinates::Coordinates;
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;
-use crate::hypothesis::{CandidateEffect, Sign};
+use crate::hypothesis::{Beginning, CandidateEffect, Sign};
 use crate::joint::HeldOut;
 use crate::nuisance::Nuisance;
 use crate::problem::DiagnosisProblem;
@@ -234,7 +234,7 @@ fn own(diagnosis: &Diagnosis) -> Vec<CandidateEffect> {
         } else {
             CandidateEffect::signs(term.effect)[0]
         },
-        carried: false,
+        beginning: Beginning::Fresh,
     };
     diagnosis.augmented.terms().iter().filter(named).filter(muscles).map(guess).collect()
 }

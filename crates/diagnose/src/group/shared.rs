@@ -4,7 +4,7 @@ use pam_core::effects::{Effect, Seen, Shape};
 use rayon::prelude::*;
 
 use super::member::{Estimate, Member, Worth};
-use crate::hypothesis::CandidateEffect;
+use crate::hypothesis::{Beginning, CandidateEffect};
 use crate::trial::step_around;
 
 /// Shapes of the grid that are refined, the best of those whose first differs: where friction turns over with a channel that is late, there is more than one
@@ -63,7 +63,8 @@ pub(super) fn on_grid(members: &[&Member<'_>], effect: &'static dyn Effect) -> O
         .first_shapes(&seen)
         .into_iter()
         .flat_map(|shape| {
-            let guess = move |&sign| CandidateEffect { effect, shape: shape.clone(), sign, carried: false };
+            let guess =
+                move |&sign| CandidateEffect { effect, shape: shape.clone(), sign, beginning: Beginning::Fresh };
             CandidateEffect::signs(effect).iter().map(guess)
         })
         .collect();

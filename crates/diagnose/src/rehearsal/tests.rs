@@ -7,7 +7,7 @@ use pam_identification::search_space::{Free, LATEX_RATIO, SearchSpace};
 
 use super::*;
 use crate::design_matrix::Regressors;
-use crate::hypothesis::CandidateEffect;
+use crate::hypothesis::{Beginning, CandidateEffect};
 use crate::protocols;
 use crate::state::Setting;
 
@@ -112,7 +112,7 @@ impl Given {
             effect: effect(id).expect("an id"),
             shape: shape.to_vec(),
             sign: crate::hypothesis::Sign::Any,
-            carried: false,
+            beginning: Beginning::Fresh,
         }
     }
 

@@ -26,7 +26,7 @@ impl Beside {
         best: &Judged,
     ) -> Option<Self> {
         let track = setting.track;
-        let carried = best.state.guesses.iter().filter(|guess| guess.carried);
+        let carried = best.state.guesses.iter().filter(|guess| guess.has_own_beginnings());
         let plain = carried.fold(of_recordings.clone(), |nuisance, guess| setting.begun(&nuisance, &best.state, guess));
         let bare = setting.beside(&plain);
         let (smooth_square, smooth) = fitting(&bare, best, &plain.with_map(track, coordinates))?;

@@ -7,7 +7,7 @@ use super::worth::LEAST_LOG_RATIO;
 use super::{Judged, Limits, again};
 use crate::coordinates::Coordinates;
 use crate::forms::Forms;
-use crate::hypothesis::CandidateEffect;
+use crate::hypothesis::{Beginning, CandidateEffect};
 use crate::joint::HeldOut;
 use crate::nuisance::Nuisance;
 use crate::plausible::strains;
@@ -99,7 +99,8 @@ impl Look<'_> {
         };
         let nothing = |&effect: &&'static dyn Effect| {
             let shape = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
-            let guess = CandidateEffect { effect, shape, sign: CandidateEffect::signs(effect)[0], carried: false };
+            let guess =
+                CandidateEffect { effect, shape, sign: CandidateEffect::signs(effect)[0], beginning: Beginning::Fresh };
             let mean_square = best.state.fit.mean_square;
             Trial { guess, mean_square, held_out: best.held_out.clone(), log_ratio: 0.0 }
         };

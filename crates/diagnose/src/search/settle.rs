@@ -13,8 +13,11 @@ pub(super) fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Op
     let sampled = setting.sampled();
     let thin = sampled.fit_near(best.state.guesses.clone(), &best.state)?;
     let (_, guess) = trial::refine(&sampled, &thin, &chosen.guess, chosen.mean_square, 1);
-    let begun =
-        if guess.carried { setting.begun(setting.nuisance, &best.state, &guess) } else { setting.nuisance.clone() };
+    let begun = if guess.has_own_beginnings() {
+        setting.begun(setting.nuisance, &best.state, &guess)
+    } else {
+        setting.nuisance.clone()
+    };
     let setting = &setting.beside(&begun);
     let sampled = setting.sampled();
     let mut state = trial::with(&sampled, &thin, &guess)?;

@@ -56,7 +56,7 @@ pub fn chance(without: &HeldOut, with: &HeldOut) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hypothesis::{CandidateEffect, Sign};
+    use crate::hypothesis::{Beginning, CandidateEffect, Sign};
     use crate::trial::Trial;
 
     use pam_core::effects::effect;
@@ -68,7 +68,7 @@ mod tests {
     /// A lag that leaves `after` of `before`, both mean squares in N², with the evidence `log_ratio`.
     fn tried(before: f64, after: f64, log_ratio: f64) -> Tried {
         let effect = effect("pressure-lag").expect("an id");
-        let guess = CandidateEffect { effect, shape: vec![0.1], sign: Sign::Any, carried: false };
+        let guess = CandidateEffect { effect, shape: vec![0.1], sign: Sign::Any, beginning: Beginning::Fresh };
         let trial = Trial { guess, mean_square: after, held_out: held(after), log_ratio };
         Tried { trial, before: held(before) }
     }

@@ -7,7 +7,7 @@ use pam_identification::search_space::Free;
 use super::hypothesis::{Change, Hypothesis, Subject};
 use super::point::Point;
 use super::quantity::{Channel, Quantity};
-use crate::hypothesis::{CandidateEffect, Sign};
+use crate::hypothesis::{Beginning, CandidateEffect, Sign};
 
 /// Factors to a shape of then that a later one is looked for at first.
 const OTHER_SHAPES: [f64; 6] = [0.25, 0.5, 0.75, 1.33, 2.0, 4.0];
@@ -100,11 +100,13 @@ pub(crate) fn variants(
         let term = point.terms.len();
         for shape in effect.first_shapes(seen) {
             for &sign in CandidateEffect::signs(effect) {
-                for &carried in CandidateEffect::beginnings(effect) {
-                    let guess = CandidateEffect { effect, shape: shape.clone(), sign, carried };
+                // What was there before the change is not known to be rested.
+                for carried in [false, true].into_iter().take(1 + usize::from(effect.outlasts())) {
+                    let beginning = if carried { Beginning::Own } else { Beginning::Fresh };
+                    let guess = CandidateEffect { effect, shape: shape.clone(), sign, beginning };
                     let (moved, ranges) = amplitudes(&guess, term);
                     let values = ranges.iter().map(|(low, high)| 0.0_f64.clamp(*low, *high)).collect();
-                    let with = point.clone().with(Term { effect, shape: shape.clone(), amplitudes: values });
+                    let with = point.clone().with(Term::new(effect, shape.clone(), values));
                     add(Subject::New(term, effect), with, moved, ranges, carried.then_some(term));
                 }
             }

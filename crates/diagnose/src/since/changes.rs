@@ -116,7 +116,7 @@ struct Then {
 fn prepared(request: Request) -> Result<(Track, Then, ChangeConfig, ChangeFit), DiagnoseError> {
     let Request { recordings, baseline, config } = request;
     let (mut later, _) = check::prepare(recordings, Vec::new(), &baseline, config.accept_implausible)?;
-    let augmented = baseline.augmented_model().without_events();
+    let augmented = baseline.augmented_model().elsewhere();
     for prepared in &mut later {
         prepared.begin(augmented.base(), baseline.direction.standstill)?;
     }

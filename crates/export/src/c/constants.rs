@@ -88,8 +88,10 @@ pub(super) fn of_effects(parts: &[(Part, &Term)]) -> Vec<(String, f64)> {
     let named = parts.iter().flat_map(|(part, term)| {
         let shapes = term.effect.shape().iter().map(|shape| shape.name);
         let names = shapes.chain(term.effect.amplitudes().iter().map(|amplitude| amplitude.name));
-        let values = term.shape.iter().chain(&term.amplitudes);
-        names.zip(values).map(|(name, value)| (parameter(&part.id, name), *value))
+        let values = term.shape.iter().chain(&term.amplitudes).copied();
+        let keeps = term.effect.keeps().iter().enumerate();
+        let past = keeps.map(|(index, kept)| (kept.name, term.past.after.get(index).copied().unwrap_or(kept.fresh)));
+        names.zip(values).chain(past).map(|(name, value)| (parameter(&part.id, name), value))
     });
     named.collect()
 }

@@ -102,10 +102,8 @@ fn what_has_no_inverse_says_why_and_what_is_possible() {
 
 /// The nominal muscle behind a threshold of 40 kPa, with a gauge that drifts.
 fn with_threshold() -> AugmentedModel {
-    let term = |id: &str, shape: &[f64], amplitudes: &[f64]| Term {
-        effect: effect(id).unwrap(),
-        shape: shape.to_vec(),
-        amplitudes: amplitudes.to_vec(),
+    let term = |id: &str, shape: &[f64], amplitudes: &[f64]| {
+        Term::new(effect(id).unwrap(), shape.to_vec(), amplitudes.to_vec())
     };
     let drift = term("force-drift", &[30.0], &[5.0, 5.0]);
     AugmentedModel::new(nominal(), vec![term("threshold-pressure", &[4e4], &[]), drift])
@@ -129,7 +127,7 @@ fn a_threshold_asks_for_its_pressure_on_top() {
 
 #[test]
 fn effects_of_size_zero_change_nothing() {
-    let zero = Term { effect: effect("load-dependent-friction").unwrap(), shape: vec![], amplitudes: vec![0.0] };
+    let zero = Term::new(effect("load-dependent-friction").unwrap(), vec![], vec![0.0]);
     let augmented = ExactInverse::new(AugmentedModel::new(nominal(), vec![zero]), BOX, 0.05);
     for (force_n, length_m, direction) in [(100.0, 0.22, 1.0), (300.0, 0.24, 0.2), (500.0, 0.26, -1.0)] {
         let [expected_pa, found_pa] =

@@ -26,7 +26,7 @@ fuzz_target!(|data: &[u8]| {
     }
     if let Ok(prepared) = prepare(short_recording(), &artifact) {
         let _ = outside(&prepared, &artifact.domain);
-        let _ = augmented_forces_n(&prepared, &model.without_events(), artifact.direction);
+        let _ = augmented_forces_n(&prepared, &model.elsewhere(), artifact.direction);
         let _ = evaluate_augmented(std::slice::from_ref(&prepared), &model, artifact.direction);
     }
     let _ = Uncertainty::new(&artifact).map_err(|error| error.to_string());

@@ -9,7 +9,7 @@ fn base() -> ForceModel {
 }
 
 fn term(id: &str, shape: &[f64], amplitudes: &[f64]) -> Term {
-    Term { effect: effect(id).expect("an id"), shape: shape.to_vec(), amplitudes: amplitudes.to_vec() }
+    Term::new(effect(id).expect("an id"), shape.to_vec(), amplitudes.to_vec())
 }
 
 /// A stroke of 30 mm there and back at changing pressure.
@@ -73,7 +73,7 @@ fn amplitudes_of_zero_change_nothing() {
     for effect in CATALOGUE.iter().filter(|effect| effect.role() == Role::Pulls) {
         let shape: Vec<f64> = effect.shape().iter().map(|shape| shape.grid[0]).collect();
         let zeros = vec![0.0; effect.amplitudes().len()];
-        let model = AugmentedModel::new(base(), vec![Term { effect: *effect, shape, amplitudes: zeros }]);
+        let model = AugmentedModel::new(base(), vec![Term::new(*effect, shape, zeros)]);
         let mut memory = model.start();
         for now in path() {
             let expected_n = base().force_n(now.pressure_pa, now.length_m, now.direction);
@@ -88,7 +88,7 @@ fn the_force_is_linear_in_the_amplitudes() {
         let shape: Vec<f64> = effect.shape().iter().map(|shape| shape.grid[0]).collect();
         let added_n = |factor: f64| -> Vec<f64> {
             let amplitudes = effect.amplitudes().iter().map(|amplitude| factor * amplitude.range.1).collect();
-            let term = Term { effect: *effect, shape: shape.clone(), amplitudes };
+            let term = Term::new(*effect, shape.clone(), amplitudes);
             let model = AugmentedModel::new(base(), vec![term]);
             let mut memory = model.start();
             let base_n = |now: &Moment| base().force_n(now.pressure_pa, now.length_m, now.direction);
@@ -145,5 +145,5 @@ fn a_muscle_leaves_instruments_and_fixture_behind() {
     let ids: Vec<&str> = muscle.terms().iter().map(|term| term.effect.page().id).collect();
     assert_eq!(ids, ["slack", "pressure-lag"]);
     assert_eq!(model.beside_the_muscle(), ["force-drift", "force-step"]);
-    assert_eq!(model.without_events().terms().len(), 3);
+    assert_eq!(model.elsewhere().terms().len(), 3);
 }

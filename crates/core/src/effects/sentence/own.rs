@@ -204,7 +204,7 @@ mod tests {
             Sentence { scale: Scale::SlopeOverLength, ..sentence(Curve::Spline { knots: vec![0.0, 0.1, 0.2] }) };
         let effect = own(&longer).expect("an effect");
         // As if the length read a tenth of a millimetre short everywhere.
-        let term = Term { effect, shape: Vec::new(), amplitudes: vec![1e-4; 3] };
+        let term = Term::new(effect, Vec::new(), vec![1e-4; 3]);
         let model = AugmentedModel::new(force.clone(), vec![term]);
         let expected_n = force.force_n(3e5, 0.2401, 1.0);
         assert!((model.settled_force_n(3e5, 0.24, 1.0) - expected_n).abs() < 0.02);

@@ -1,10 +1,15 @@
 typedef struct {
+    int started;
     double travel_m, follower_m;
 } pam_fatigue_wear;
 
 static inline double pam_fatigue_wear_pulls(pam_fatigue_wear *memory, const pam_moment *now, const pam_base *base)
 {
     const double reference_m = 100.0, half_play_m = 1.5e-4;
+    if (!memory->started) {
+        memory->travel_m = PAM_FATIGUE_WEAR_PAST_TRAVEL_M;
+        memory->started = 1;
+    }
     if (now->step_s == 0.0) {
         memory->follower_m = now->slide_m;
     } else {

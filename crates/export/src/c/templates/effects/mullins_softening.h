@@ -9,10 +9,12 @@ static inline double pam_mullins_softening_pulls(pam_mullins_softening *memory, 
 {
     const double half_play = 5e-4;
     const double here = now->contraction_ratio;
-    if (!memory->started || here > memory->largest) {
-        memory->largest = here;
+    if (!memory->started) {
+        memory->largest = PAM_MULLINS_SOFTENING_PAST_CONTRACTION;
+        memory->travelled = PAM_MULLINS_SOFTENING_PAST_TRAVEL;
+        memory->started = 1;
     }
-    memory->started = 1;
+    memory->largest = fmax(memory->largest, here);
     if (now->step_s == 0.0) {
         memory->follower = here;
     } else {
