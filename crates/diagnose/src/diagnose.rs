@@ -99,6 +99,8 @@ pub struct Diagnosis {
     pub augmented: AugmentedModel,
     /// Effects as a model artifact has them.
     pub entries: Vec<EffectEntry>,
+    /// What is left of the fitted recording that the others foretell worst, root mean square in N; nothing where there is only one.
+    pub worst_foretold_n: f64,
     /// Standard errors of base and amplitudes.
     pub uncertainty: Uncertainty,
     /// What was free in the base.
@@ -240,6 +242,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let folds = whole.fold_fits(state).ok_or_else(undetermined)?;
     let uncertainty = Uncertainty::of(&folds, space);
 
+    let worst_foretold_n = whole.worst_foretold_n(state);
     let correlated = correlated_instants(&whole, &whole.residuals_n(state));
     let sentences = own::sentences(&whole, state);
     let (effects, mut entries) = named(&whole, &found, state, &uncertainty, correlated, &sentences, knocks.as_ref());
@@ -301,6 +304,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         base: better_base(&estimation, &model, &found.base.state.model)?,
         augmented,
         entries,
+        worst_foretold_n,
         uncertainty,
         free,
         at_bound,

@@ -17,6 +17,9 @@ use crate::error::DiagnoseError;
 /// not say what eq. 11 is elsewhere (2.6 times was seen of a healthy muscle), and memory goes on from recording to recording.
 const MOST: f64 = 4.0;
 
+/// Times the worst error with which one of the fitted recordings is foretold by the others: so much is foretold of any recording.
+const AS_OTHERS: f64 = 2.0;
+
 /// Share of a held-out recording within what was fitted from which on it is judged, there alone.
 const LEAST_WITHIN: f64 = 0.1;
 /// Share of it outside from which on that is said.
@@ -69,7 +72,10 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
         let left_n = if instrument.is_some() { left_n } else { left_n.min(rmse_n(&within)) };
         let reason = match instrument {
             Some(instrument) => instrument,
-            None if left_n > MOST * own_n && share_within >= LEAST_WITHIN => {
+            None if left_n > MOST * own_n
+                && left_n > AS_OTHERS * diagnosis.worst_foretold_n
+                && share_within >= LEAST_WITHIN =>
+            {
                 "it is of another muscle, or differs in something that was not fitted".to_owned()
             }
             None => {

@@ -11,7 +11,7 @@ use crate::hypothesis::{CandidateEffect, ranges};
 use crate::joint::{HeldOut, Joint, JointFit};
 use crate::normal::{Extended, Normal};
 use crate::nuisance::Nuisance;
-use crate::track::Track;
+use crate::track::{FOLDS, Track};
 
 /// Rounds in which what slack leaves of the force and the fit settle with one another, at most.
 const READ_ROUNDS: usize = 8;
@@ -276,6 +276,26 @@ impl<'a> Setting<'a> {
         self.joint(&limits).hold_out(&state.normal.alone(), &state.fit.x, &self.track.fold_of_block)
     }
 
+    /// What is left of the recording that `state`, fitted to the others, foretells worst, root mean square in N; nothing where there
+    /// is only one. Of many recordings a few are left out together.
+    pub fn worst_foretold_n(&self, state: &State) -> f64 {
+        if self.track.recordings.len() < 2 {
+            return 0.0;
+        }
+        let fold_of_block: Vec<usize> =
+            self.track.recording_of_block.iter().map(|recording| recording % FOLDS).collect();
+        let limits = ranges(&state.guesses);
+        let held_out = self.joint(&limits).hold_out(&state.normal.alone(), &state.fit.x, &fold_of_block);
+        let Some(HeldOut { blocks, counts, .. }) = held_out else { return 0.0 };
+        let of_recording = |recording: usize| {
+            let own = (0..blocks.len()).filter(|&block| self.track.recording_of_block[block] == recording);
+            let (squares, n) =
+                own.fold((0.0, 0.0), |(squares, n), at| (squares + blocks[at] * counts[at], n + counts[at]));
+            f64::sqrt(squares / f64::max(n, 1.0))
+        };
+        (0..self.track.recordings.len()).map(of_recording).fold(0.0, f64::max)
+    }
+
     /// Joint fit of `state` and one more guess that only adds.
     pub fn fit_more(&self, state: &State, guess: &CandidateEffect) -> Option<JointFit> {
         let (rows, limits) = self.more(state, guess);
@@ -355,5 +375,25 @@ impl<'a> Setting<'a> {
                 instant.force_n - read.slopes[at] * model_n - read.offsets_n[at]
             })
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rehearsal::tests::Given;
+
+    #[test]
+    fn a_recording_that_differs_from_the_others_is_foretold_worst_and_a_single_one_is_not_foretold() {
+        let worst_n = |given: &Given| {
+            let state = given.setting().fit(Vec::new(), &given.start, &given.model).expect("a fit");
+            given.setting().worst_foretold_n(&state)
+        };
+        let protocols = ["isobaric-triangles", "isometric-ramps", "multisine"];
+        let alike = Given::of(&protocols, &[]);
+        let mut other = Given::of(&protocols, &[]);
+        let last = other.track.recordings.last().expect("recordings").clone();
+        other.track.instants[last].iter_mut().for_each(|instant| instant.force_n += 20.0);
+        assert!(worst_n(&alike) < 0.5 && worst_n(&other) > 5.0, "{} {}", worst_n(&alike), worst_n(&other));
+        assert!(worst_n(&Given::of(&protocols[..1], &[])).abs() < 1.0);
     }
 }
