@@ -105,10 +105,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "RHO", default_value_t = 0.0, value_parser = pam_cli::number, allow_negative_numbers = true)]
     pub(crate) force_noise_correlation: f64,
 
-    /// Share of the variance of the force noise that is colored; the rest is white.
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = pam_cli::number, allow_negative_numbers = true)]
-    pub(crate) force_noise_colored_share: f64,
-
     /// Clock of the logger: ideal, or cut to whole milliseconds, so that stamps repeat above 1 kHz.
     #[arg(long, value_name = "CLOCK", default_value = "ideal")]
     pub(crate) clock: Clock,

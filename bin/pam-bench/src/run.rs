@@ -142,7 +142,6 @@ fn bench(args: &Args, muscle: TrueMuscle, protocol: Protocol) -> Result<Bench> {
         .map_err(|error| anyhow!("--smooth-misfit-n: {error}"))?;
     let mut sensors = bench.sensors().clone().with_noise_times(args.noise);
     sensors.force_n.noise_correlation = args.force_noise_correlation;
-    sensors.force_n.colored_share = args.force_noise_colored_share;
     if let Some(noise_rms) = args.force_noise_n {
         sensors.force_n.noise_rms = noise_rms;
     }
@@ -155,7 +154,7 @@ fn bench(args: &Args, muscle: TrueMuscle, protocol: Protocol) -> Result<Bench> {
         BenchError::Noise { channel: "force", .. } if args.force_noise_n.is_some() => {
             anyhow!("--force-noise-n: {error}")
         }
-        BenchError::ColoredShare { .. } => anyhow!("--force-noise-colored-share: {error}"),
+        BenchError::ColoredShare { .. } => anyhow!("{error}"),
         BenchError::Noise { .. } => anyhow!("--noise {}: {error}", args.noise),
         BenchError::Correlation { .. } => anyhow!("--force-noise-correlation: {error}"),
         BenchError::Rate { .. } | BenchError::Rows { .. } => anyhow!("--rate: {error}"),

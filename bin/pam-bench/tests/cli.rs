@@ -256,11 +256,9 @@ fn a_random_muscle_is_written_as_a_file_that_is_read_again_as_the_same() {
 }
 
 #[test]
-fn force_noise_may_be_half_white_and_half_colored_with_a_stated_total() {
-    let noisy = ["--force-noise-n", "0.3", "--force-noise-correlation", "0.98", "--force-noise-colored-share", "0.5"];
+fn force_noise_may_be_colored_with_a_stated_total() {
+    let noisy = ["--force-noise-n", "0.3", "--force-noise-correlation", "0.98"];
     assert_eq!(lift(&noisy).status.code(), Some(0));
     let line = error_line(&lift(&["--force-noise-n", "-1"]));
     assert!(line.contains("--force-noise-n: noise of the force channel is -1"), "{line}");
-    let line = error_line(&lift(&["--force-noise-colored-share", "2"]));
-    assert!(line.contains("share of colored noise of the force channel is 2"), "{line}");
 }

@@ -97,10 +97,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LAW", value_parser = standstill)]
     pub(crate) standstill: Option<Standstill>,
 
-    /// C01/C10 that their fitted sum is shared by.
-    #[arg(long, allow_negative_numbers = true, value_name = "RATIO", default_value_t = pam_identification::search_space::LATEX_RATIO)]
-    pub(crate) bladder_ratio: f64,
-
     /// By how many millimeters the length turns back before the direction of friction flips; by default five
     /// times the noise of the length channel.
     #[arg(long, allow_negative_numbers = true, value_name = "MM")]

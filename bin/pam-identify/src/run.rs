@@ -42,11 +42,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
             );
         }
     }
-    ensure!(
-        args.bladder_ratio >= 0.0 && args.bladder_ratio.is_finite(),
-        "--bladder-ratio {} is no ratio of moduli; give 0 or more",
-        args.bladder_ratio
-    );
     args.check_parameters()?;
     let from_stdin = args.logs.iter().chain(&args.holdout).filter(|path| path.as_os_str() == "-").count();
     ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
@@ -207,7 +202,6 @@ fn request(
         loss: args.loss.loss(),
         free: args.free.clone(),
         fix: args.fix.clone(),
-        bladder_ratio: args.bladder_ratio,
         length_play_m: args.length_play_mm.map(|play_mm| play_mm * 1e-3),
         pressure_play_pa: args.pressure_play_kpa.map(|play_kpa| play_kpa * 1e3),
         assumed: Assumed {

@@ -99,11 +99,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(100..=10_000_000))]
     pub(crate) judge_points: u32,
 
-    /// Slope of force over pressure below which the inverse counts as missing, in percent of the range of force
-    /// over the range of pressure.
-    #[arg(long, value_name = "X", default_value_t = 5.0)]
-    pub(crate) min_slope_percent: f64,
-
     #[command(flatten)]
     pub(crate) read: ReadArgs,
 
@@ -131,7 +126,7 @@ impl Args {
             learning_rate: self.learning_rate,
             update: self.update.update(),
             n_evaluation_points: self.judge_points as usize,
-            min_slope_share: self.min_slope_percent * 1e-2,
+            min_slope_share: standard.min_slope_share,
         }
     }
 }

@@ -117,11 +117,7 @@ fn warn_of_another_muscle(console: &Console, model: &ModelArtifact, prepared: &P
 fn check_numbers(args: &Args) -> anyhow::Result<()> {
     let share = args.validation_share;
     ensure!(share > 0.0 && share <= 0.9, "--validation-share {share} is outside 0 to 0.9");
-    for (name, value) in [
-        ("--max-error-percent", args.max_error_percent),
-        ("--learning-rate", args.learning_rate),
-        ("--min-slope-percent", args.min_slope_percent),
-    ] {
+    for (name, value) in [("--max-error-percent", args.max_error_percent), ("--learning-rate", args.learning_rate)] {
         ensure!(value > 0.0 && value.is_finite(), "{name} {value} is not a positive number");
     }
     let goal = args.goal_percent;

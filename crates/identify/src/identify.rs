@@ -12,7 +12,7 @@ use crate::evaluate::{evaluate, noise_floor_n};
 use crate::fit::{Fit, FitOptions, search};
 use crate::prepare::{Gated, Prepared, direct, finest_length_play_m, gate, redirect, thresholds};
 use crate::problem::ForceProblem;
-use crate::search_space::{Free, SearchSpace};
+use crate::search_space::{Free, LATEX_RATIO, SearchSpace};
 use crate::standstill;
 use crate::unbounded::unbounded_fit;
 use crate::uncertainty::jackknife;
@@ -73,7 +73,6 @@ pub fn check(request: Request) -> Result<Checked, IdentifyError> {
         loss: request.loss,
         free: request.free,
         fix: request.fix,
-        bladder_ratio: request.bladder_ratio,
         length_play_m: request.length_play_m,
         pressure_play_pa: request.pressure_play_pa,
         assumed: request.assumed,
@@ -93,7 +92,6 @@ pub struct Checked {
     loss: Loss,
     free: Vec<Parameter>,
     fix: Vec<(Parameter, f64)>,
-    bladder_ratio: f64,
     length_play_m: Option<f64>,
     pressure_play_pa: Option<f64>,
     assumed: Assumed,
@@ -313,8 +311,8 @@ impl Checked {
             held.theta[Parameter::RubberFriction.index()] = 0.0;
         }
         let sum_pa = Free::BladderSum.ranges(modulus_pa).nominal;
-        held.theta[Parameter::C10.index()] = sum_pa / (1.0 + self.bladder_ratio);
-        held.theta[Parameter::C01.index()] = sum_pa * self.bladder_ratio / (1.0 + self.bladder_ratio);
+        held.theta[Parameter::C10.index()] = sum_pa / (1.0 + LATEX_RATIO);
+        held.theta[Parameter::C01.index()] = sum_pa * LATEX_RATIO / (1.0 + LATEX_RATIO);
         for &(parameter, value) in &self.fix {
             held.theta[parameter.index()] = value;
         }
@@ -327,7 +325,7 @@ impl Checked {
             }
         };
         let ranges = free.iter().map(range).collect();
-        SearchSpace { free, ranges, held, bladder_ratio: self.bladder_ratio }
+        SearchSpace { free, ranges, held, bladder_ratio: LATEX_RATIO }
     }
 
     /// What of `space` the recordings cannot identify.
@@ -406,7 +404,7 @@ impl Checked {
                     value: parameter.from_artifact(value),
                 })
                 .collect(),
-            bladder_ratio: self.bladder_ratio,
+            bladder_ratio: LATEX_RATIO,
             assumed: self.assumed,
             accept_implausible: self.accept_implausible,
         }

@@ -26,8 +26,6 @@ pub struct Request {
     pub free: Vec<Parameter>,
     /// Parameters held at a value, in SI.
     pub fix: Vec<(Parameter, f64)>,
-    /// `C₀₁ / C₁₀`.
-    pub bladder_ratio: f64,
     /// By how much the length turns back before the direction flips, in m; from the noise if not given.
     pub length_play_m: Option<f64>,
     /// Likewise for the pressure, in Pa.

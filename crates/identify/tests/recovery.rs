@@ -96,7 +96,6 @@ fn identify(muscle: &TrueMuscle, seed: u64, sensing: Sensing) -> ModelArtifact {
         loss: Loss::Square,
         free: Vec::new(),
         fix: Vec::new(),
-        bladder_ratio: LATEX_RATIO,
         length_play_m: None,
         pressure_play_pa: None,
         // The bench's muscles have rubber of one share and one friction; what is free beside would share their errors.

@@ -6,7 +6,6 @@ use pam_core::force::{ForceModel, Form};
 use pam_core::muscle::MuscleFile;
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
-use pam_identification::search_space::LATEX_RATIO;
 
 use crate::case::{Log, Noise};
 use crate::rig::{Hidden, Rig, recording, sensor_noise};
@@ -53,7 +52,6 @@ impl Calibration<'_> {
             loss: Loss::Square,
             free: Vec::new(),
             fix: Vec::new(),
-            bladder_ratio: LATEX_RATIO,
             // Those that a recording with noise has.
             length_play_m: Some(5.0 * self.white_factor * length_m),
             pressure_play_pa: Some(5.0 * self.white_factor * pressure_pa),

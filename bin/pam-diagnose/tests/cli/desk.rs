@@ -8,7 +8,7 @@ use pam_core::muscle::MuscleFile;
 use pam_core::recording::{ReadOptions, Recording, read_recording};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
-use pam_identification::search_space::LATEX_RATIO;
+
 use pam_virtual_bench::{Bench, Concealed, Options, Parameters, TrueMuscle, command};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -107,7 +107,6 @@ impl Desk {
             loss: Loss::Square,
             free: Vec::new(),
             fix: Vec::new(),
-            bladder_ratio: LATEX_RATIO,
             length_play_m: None,
             pressure_play_pa: None,
             assumed: pam_core::artifact::model::Assumed::default(),

@@ -10,7 +10,7 @@ use pam_core::muscle::MuscleFile;
 use pam_core::recording::{ReadOptions, read_recording};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
-use pam_identification::search_space::LATEX_RATIO;
+
 use pam_virtual_bench::{Bench, Concealed, Options, Parameters, TrueMuscle, command};
 
 const PROTOCOLS: [&str; 3] = ["minor-loops", "isobaric-triangles", "isometric-ramps"];
@@ -77,7 +77,6 @@ impl Desk {
             loss: Loss::Square,
             free: Vec::new(),
             fix: Vec::new(),
-            bladder_ratio: LATEX_RATIO,
             length_play_m: None,
             pressure_play_pa: None,
             assumed: Assumed::default(),
