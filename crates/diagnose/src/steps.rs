@@ -132,3 +132,58 @@ pub(crate) fn shapes(setting: &Setting<'_>, state: &State) -> Vec<Vec<f64>> {
     }
     shapes
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    /// Recordings whose force is higher by 5 N from the middle of the first on; over so many seconds, or at once.
+    fn stepped(over_s: f64) -> (Given, f64) {
+        let mut given = Given::of(&["multisine"], &[]);
+        let range = given.track.recordings[0].clone();
+        let middle_s = given.track.instants[range.start + range.len() / 2].moment.time_s;
+        for instant in &mut given.track.instants[range] {
+            let share = ((instant.moment.time_s - middle_s) / f64::max(over_s, 1e-9)).clamp(0.0, 1.0);
+            instant.force_n += 5.0 * share;
+        }
+        (given, middle_s)
+    }
+
+    #[test]
+    fn a_force_that_jumps_is_found_at_its_instant_and_is_sudden() {
+        let (given, middle_s) = stepped(0.0);
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let found = shapes(&setting, &state);
+        let nearest = found.iter().filter(|shape| shape[0] == 0.0).map(|shape| (shape[1] - middle_s).abs());
+        assert!(nearest.fold(f64::INFINITY, f64::min) < 1.0, "{middle_s} {found:?}");
+        assert!(is_sudden(&setting, &setting.residuals_n(&state), &[0.0, middle_s], 5.0));
+    }
+
+    #[test]
+    fn a_force_that_rises_over_ten_seconds_is_no_step() {
+        let (given, middle_s) = stepped(10.0);
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        assert!(!is_sudden(&setting, &setting.residuals_n(&state), &[0.0, middle_s], 5.0));
+    }
+
+    #[test]
+    fn where_a_drive_starts_no_step_is_looked_for() {
+        let (given, _) = stepped(0.0);
+        let setting = given.setting();
+        let range = given.track.recordings[0].clone();
+        let stirred = stirred(&setting, range.clone());
+        let turns = range
+            .clone()
+            .skip(1)
+            .filter(|&at| given.track.instants[at].moment.direction != given.track.instants[at - 1].moment.direction);
+        let (mut n, mut all) = (0, true);
+        for at in turns {
+            n += 1;
+            all &= stirred[at - range.start];
+        }
+        assert!(n > 0 && all);
+    }
+}

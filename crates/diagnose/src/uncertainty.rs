@@ -164,3 +164,25 @@ pub fn entries(
     });
     shapes.chain(amplitudes).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    #[test]
+    fn a_shape_that_the_recordings_bend_has_an_error_and_neighbors_that_share_noise_count_once() {
+        let mut given = Given::of(&["isobaric-triangles", "multisine"], &[("pressure-lag", &[0.15], &[])]);
+        given.disturb();
+        let setting = given.setting();
+        let lag = given.guess("pressure-lag", &[0.15]);
+        let state = setting.fit(vec![lag], &given.start, &given.model).expect("a fit");
+        let residuals_n = setting.residuals_n(&state);
+        let correlated = correlated_instants(&setting, &residuals_n);
+        let error_s = |correlated: f64| shape_errors(&setting, &state, 0, correlated)[0].expect("an error");
+        assert!(correlated > 1.0, "{correlated}");
+        assert!(error_s(1.0) > 0.0 && error_s(1.0) < 0.05, "{}", error_s(1.0));
+        // Four times as many that stand for one: twice the error.
+        assert!((error_s(4.0) / error_s(1.0) - 2.0).abs() < 1e-6);
+    }
+}

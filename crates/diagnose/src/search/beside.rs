@@ -60,3 +60,32 @@ pub(super) fn kept_map(plain: &Setting<'_>, best: Judged, map: Nuisance) -> Opti
     let keeps = best.held_out.mean_square() < (1.0 - WORTH_A_MAP) * bare.held_out.mean_square();
     Some(if keeps { (best, map) } else { (bare, plain.nuisance.clone()) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+    use crate::search::judged;
+
+    const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
+
+    /// Whether a static map is kept beside the base model of a muscle that eq. 11 misses by up to so many newtons.
+    fn keeps_map(size_n: f64) -> bool {
+        let mut given = Given::of(&PROTOCOLS, &[]);
+        given.disturb();
+        given.bend(size_n);
+        let plain = Setting { floor_square: 0.09, ..given.setting() };
+        let base = judged(&plain, plain.fit(Vec::new(), &given.start, &given.model).expect("a fit")).expect("folds");
+        let coordinates = Coordinates::of(&given.track);
+        let (_, map) = fitting(&plain, &base, &plain.nuisance.with_map(&given.track, &coordinates)).expect("a map");
+        let mapped = again(&plain.beside(&map), &base).expect("a fit beside it");
+        let (_, kept) = kept_map(&plain, mapped, map).expect("a choice");
+        kept.n() > plain.nuisance.n()
+    }
+
+    #[test]
+    fn a_static_map_is_kept_where_it_foretells_and_dropped_where_nothing_is_missing() {
+        assert!(keeps_map(6.0));
+        assert!(!keeps_map(0.0));
+    }
+}

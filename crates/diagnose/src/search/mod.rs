@@ -267,6 +267,7 @@ mod tests {
 
     use pam_core::effects::effect;
 
+    use crate::hypothesis::Beginning;
     use crate::rehearsal::tests::Given;
 
     const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
@@ -291,6 +292,28 @@ mod tests {
         let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
         given.disturb();
         assert_eq!(names(&given), ["pressure-lag"]);
+    }
+
+    #[test]
+    fn rubber_that_stays_soft_from_one_recording_to_the_next_is_named_as_going_on() {
+        let mut given = Given::of(&PROTOCOLS, &[]);
+        let softening = effect("mullins-softening").expect("an id");
+        let beginnings = CandidateEffect::beginnings(softening, &given.track, &given.muscle);
+        let goes_on = beginnings.into_iter().find(|one| matches!(one, Beginning::GoesOn(_))).expect("a past");
+        let guess = CandidateEffect { beginning: goes_on, ..given.guess("mullins-softening", &[0.03, 0.5]) };
+        let sheet = given.setting().ground().sheet(&[guess], &given.model);
+        let mut weights = given.columns.weights(given.model.parameters()).to_vec();
+        weights.extend([0.3, 0.3]);
+        for (at, instant) in given.track.instants.iter_mut().enumerate() {
+            instant.force_n = sheet.force_n(at, &weights);
+        }
+        given.disturb();
+        let limits = Limits::of_test(3, 0.3);
+        let setting = Setting { floor_square: 0.09, ..given.setting() };
+        let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
+        let guesses = &found.best.state.guesses;
+        assert_eq!(guesses.iter().map(CandidateEffect::id).collect::<Vec<_>>(), ["mullins-softening"]);
+        assert!(matches!(guesses[0].beginning, Beginning::GoesOn(_)), "{:?}", guesses[0].beginning);
     }
 
     #[test]

@@ -160,3 +160,41 @@ pub(super) fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, prom
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
+
+    fn of(given: &Given, id: &str, shape: &[f64]) -> Judged {
+        let setting = given.setting();
+        let state = setting.fit(vec![given.guess(id, shape)], &given.start, &given.model).expect("a fit");
+        judged(&setting, state).expect("a fit of every fold")
+    }
+
+    #[test]
+    fn a_lag_that_was_taken_at_a_point_of_its_grid_ends_at_its_own_time() {
+        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+        given.disturb();
+        let mut best = of(&given, "pressure-lag", &[0.1]);
+        for _ in 0..3 {
+            let before = best.held_out.mean_square();
+            best = polished(&given.setting(), best).expect("a fit");
+            assert!(best.held_out.mean_square() <= before, "{:?}", best.state.guesses);
+        }
+        let time_s = best.state.guesses[0].shape[0];
+        assert!((time_s - 0.15).abs() < 2e-3, "{time_s}");
+    }
+
+    #[test]
+    fn a_delay_of_a_channel_that_the_recordings_do_not_tell_rests_at_zero_and_the_other_stays() {
+        let mut given = Given::of(&["isometric-ramps"], &[("channel-delay", &[0.06, 0.0], &[])]);
+        given.disturb();
+        // The length is held: its delay shows in nothing.
+        let rested = at_rest(&given.setting(), of(&given, "channel-delay", &[0.06, 0.01])).expect("a fit");
+        let shape = &rested.state.guesses[0].shape;
+        assert!(shape[1] == 0.0 && (shape[0] - 0.06).abs() < 1e-12, "{shape:?}");
+    }
+}
