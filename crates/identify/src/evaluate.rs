@@ -176,7 +176,7 @@ pub fn evaluate_augmented(
     Ok(Evaluation::of(&tallies?))
 }
 
-/// The same, with what is left of the samples of each recording in N, as much as a [`Trace`] holds of them; zero where they are
+/// The same, with what is left of the samples of each recording in N, as much as a trace holds of them; zero where they are
 /// not counted.
 ///
 /// # Errors
