@@ -3,9 +3,9 @@
 use pam_core::artifact::diagnosis::{AsGiven, BeforeAfter, Coordinate, Evidence, NamedEffect, Region, Verdict};
 use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
 use pam_core::artifact::{DiagnosisArtifact, InputRole, ModelArtifact};
-use pam_core::effects::Symbol;
 use pam_core::effects::page::Confusion;
 use pam_core::effects::symbols::{symbol_of_base, symbol_of_effect};
+use pam_core::effects::{CATALOGUE, Symbol};
 use pam_diagnosis::traces::Trace;
 use pam_report::{
     DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageCoordinate, PageEffect,
@@ -245,6 +245,11 @@ fn alternative(id: &str, confusions: &[Confusion], own: &OwnEffects) -> PageAlte
     }
 }
 
+/// Whether `entry` is what the muscle has been through, and no value of a fit.
+pub(crate) fn is_past(entry: &ParameterEntry) -> bool {
+    CATALOGUE.iter().any(|effect| effect.keeps().iter().any(|kept| kept.name == entry.name))
+}
+
 fn parameter(id: &str, entry: &ParameterEntry) -> PageParameter {
     PageParameter {
         name: entry.name.clone(),
@@ -255,6 +260,7 @@ fn parameter(id: &str, entry: &ParameterEntry) -> PageParameter {
         stderr: entry.stderr,
         status: match entry.status {
             ParameterStatus::Fitted => "fitted",
+            ParameterStatus::Fixed if is_past(entry) => "at the end of these recordings",
             ParameterStatus::Fixed => "not seen by these recordings",
             ParameterStatus::Composite => "not separately identifiable",
             ParameterStatus::AtBound => "at the end of its range",

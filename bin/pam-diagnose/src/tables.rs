@@ -77,6 +77,7 @@ fn value(entry: &ParameterEntry) -> String {
     };
     match entry.status {
         ParameterStatus::AtBound => format!("{value}, at its bound"),
+        ParameterStatus::Fixed if page::is_past(entry) => format!("{value}, at the end"),
         ParameterStatus::Fixed => format!("{value}, not seen"),
         ParameterStatus::Fitted | ParameterStatus::Composite => value,
     }

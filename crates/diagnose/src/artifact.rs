@@ -14,6 +14,7 @@ use pam_identification::search_space::Free;
 
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;
+use crate::trial::ends_as_meant;
 
 /// How an artifact begins.
 #[derive(Debug, Clone, PartialEq)]
@@ -287,10 +288,12 @@ impl Diagnosis {
         }
         let at_bound = |entry: &&ParameterEntry| entry.status == ParameterStatus::AtBound;
         for effect in &self.entries {
-            for parameter in effect.parameters.iter().filter(at_bound) {
+            let says_how = |entry: &&ParameterEntry| ends_as_meant(&effect.id, &entry.name, entry.value);
+            for parameter in effect.parameters.iter().filter(at_bound).filter(|entry| !says_how(entry)) {
+                let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
                 warnings.push(format!(
-                    "{} of {} is at the end of its range, {:.4} {}: the effect may stand in for something else",
-                    parameter.name, effect.id, parameter.value, parameter.unit
+                    "{} of {} is at the end of its range, {:.4}{unit}: the effect may stand in for something else",
+                    parameter.name, effect.id, parameter.value
                 ));
             }
         }

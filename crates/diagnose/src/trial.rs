@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pam_core::effects::{Effect, Kind, Seen, Shape};
+use pam_core::effects::{Effect, Kind, Seen, Shape, effect};
 use rayon::prelude::*;
 
 use crate::hypothesis::{Beginning, CandidateEffect, n_amplitudes};
@@ -56,6 +56,13 @@ fn is_at_end(effect: &dyn Effect, index: usize, parameter: &Shape, value: f64) -
     let is_meant = |end: f64| end == 0.0 || effect.may_end(index, end);
     let at_end = value <= low + near.min(0.05 * low.abs()) && !is_meant(low) || value >= high - near && !is_meant(high);
     effect.kind() != Kind::Event && at_end
+}
+
+/// Whether the shape `name` of effect `id`, at an end of its range, only says how the effect acts.
+pub(crate) fn ends_as_meant(id: &str, name: &str, value: f64) -> bool {
+    let Some(effect) = effect(id) else { return false };
+    let shapes = effect.shape().iter().enumerate();
+    shapes.filter(|(_, shape)| shape.name == name).any(|(index, shape)| !is_at_end(effect, index, shape, value))
 }
 
 /// Whether a shape is at an end of its range that is no share of a whole: the data want a length, a time or a speed that nothing
@@ -284,8 +291,6 @@ pub(crate) fn step_around(grid: &[f64], range: (f64, f64), value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    use pam_core::effects::effect;
-
     fn of(id: &str) -> &'static dyn Effect {
         effect(id).expect("an effect of the catalogue")
     }
@@ -302,6 +307,13 @@ mod tests {
     #[test]
     fn a_creep_that_is_all_of_the_length_is_a_relaxation_instead() {
         assert!(is_degenerate(of("pressure-creep"), &[6.0, 1.0]));
+    }
+
+    #[test]
+    fn rubber_that_settles_at_once_is_softening_and_one_that_never_does_may_be_something_else() {
+        assert!(ends_as_meant("mullins-softening", "settling_travel", 0.02));
+        assert!(!ends_as_meant("mullins-softening", "settling_travel", 5.0));
+        assert!(!ends_as_meant("rubber-hysteresis", "width_m", 1e9) && !ends_as_meant("no-effect", "width_m", 0.0));
     }
 
     #[test]
