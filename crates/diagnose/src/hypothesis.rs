@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pam_core::effects::{Amplitude, Base, Effect, Memory, Past, Role};
+use pam_core::effects::{Amplitude, Base, Effect, Kind, Memory, Past, Role};
 use pam_core::muscle::Muscle;
 
 use crate::track::Track;
@@ -72,8 +72,9 @@ impl CandidateEffect {
     pub fn beginnings(effect: &dyn Effect, track: &Track, muscle: &Muscle) -> Vec<Beginning> {
         let own = effect.outlasts().then_some(Beginning::Own);
         let goes_on = effect.is_permanent().then(|| Beginning::GoesOn(Arc::new(past(effect, track, muscle))));
-        // In a single recording both are the same, and others are made after it.
-        let fresh = (goes_on.is_none() || track.recordings.len() > 1).then_some(Beginning::Fresh);
+        // In a single recording both are the same, and others are made after it; an event may have been put right by then.
+        let is_event = effect.kind() == Kind::Event;
+        let fresh = (goes_on.is_none() || is_event || track.recordings.len() > 1).then_some(Beginning::Fresh);
         fresh.into_iter().chain(own).chain(goes_on).collect()
     }
 

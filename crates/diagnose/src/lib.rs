@@ -14,6 +14,7 @@ pub mod design_matrix;
 pub mod diagnose;
 mod discover;
 pub mod error;
+mod events;
 pub mod explain;
 mod forms;
 pub mod given;

@@ -1,8 +1,9 @@
 //! Where model and recordings differ, in regions over the coordinates.
 
 use pam_core::artifact::diagnosis::{Coordinate, Region};
+use pam_core::effects::Kind;
 
-use crate::regions::{Place, concentrated};
+use crate::regions::{Place, concentrated, from_event};
 use crate::search::{Found, chance};
 use crate::state::{Setting, State};
 use crate::structure::ProjectedResidual;
@@ -24,9 +25,12 @@ pub(crate) fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) ->
                 (chance(&taken.without, &taken.with) * found.first.len() as f64).min(1.0),
             )
         });
-        if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
-            regions.push((log_ratio, place.region));
-        }
+        let region = if guess.effect.kind() == Kind::Event {
+            from_event(setting, guess, &excess, p_value, paths)
+        } else {
+            concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths).map(|place| place.region)
+        };
+        regions.extend(region.map(|region| (log_ratio, region)));
     }
     regions.sort_by(|left, right| right.0.total_cmp(&left.0));
     let mut out: Vec<Region> = regions.into_iter().map(|(_, region)| region).collect();

@@ -3,6 +3,7 @@
 use pam_core::artifact::diagnosis::{Coordinate, Region};
 
 use crate::coordinates::Coordinates;
+use crate::hypothesis::CandidateEffect;
 use crate::state::Setting;
 
 /// Intervals that a coordinate is divided into.
@@ -104,6 +105,33 @@ pub fn concentrated(
         recording: recording.and_then(|index| paths.get(index).cloned()),
     };
     Some(Place { region, is_everywhere })
+}
+
+/// From the instant of `event` to the end of its recording, whose mismatch a fit without it spreads over all; none for a recording
+/// that is not there.
+pub fn from_event(
+    setting: &Setting<'_>,
+    event: &CandidateEffect,
+    excess: &[f64],
+    p_value: f64,
+    paths: &[String],
+) -> Option<Region> {
+    let [index, instant_s] = event.shape[..] else { return None };
+    let index = index.round() as usize;
+    let range = setting.track.recordings.get(index)?;
+    let time_s = |at: usize| setting.track.instants[at].moment.time_s;
+    let after = range.start + setting.track.instants[range.clone()].partition_point(|at| at.moment.time_s < instant_s);
+    let counted = &setting.track.counted;
+    let (here, all) = (sum(after..range.end, counted, excess), sum(0..setting.track.n(), counted, excess));
+    Some(Region {
+        coordinate: Coordinate::Time,
+        from: instant_s,
+        to: time_s(range.end - 1),
+        unit: Coordinate::Time.unit().to_owned(),
+        share_of_excess: if all > 0.0 { (here / all).clamp(0.0, 1.0) } else { 0.0 },
+        p_value,
+        recording: paths.get(index).cloned(),
+    })
 }
 
 fn sum(range: std::ops::Range<usize>, counted: &[bool], excess: &[f64]) -> f64 {

@@ -22,7 +22,8 @@ pub(crate) fn is_sudden(setting: &Setting<'_>, residuals_n: &[f64], shape: &[f64
     })
 }
 
-/// Mean residual just after an instant less that just before it; none where too little of either counts.
+/// Mean residual just after an instant less that just before it, over as many of the nearest instants that count as there are
+/// within `near_s`; none where too little of either is within [`NEAR_S`].
 fn jump_n(
     setting: &Setting<'_>,
     residuals_n: &[f64],
@@ -30,19 +31,25 @@ fn jump_n(
     instant_s: f64,
     near_s: f64,
 ) -> Option<f64> {
-    let (mut before, mut after) = ((0.0, 0.0), (0.0, 0.0));
-    let instants = &setting.track.instants[range.clone()];
-    let first = range.start + instants.partition_point(|instant| instant.moment.time_s < instant_s - near_s);
-    for at in (first..range.end).filter(|&at| setting.track.counted[at]) {
-        let time_s = setting.track.instants[at].moment.time_s;
-        if time_s > instant_s + near_s {
-            break;
+    let instants = &setting.track.instants;
+    let apart_s = |at: usize| (instants[at].moment.time_s - instant_s).abs();
+    let middle = range.start + instants[range.clone()].partition_point(|instant| instant.moment.time_s < instant_s);
+    let mean_n = |side: &mut dyn Iterator<Item = usize>| {
+        let (mut wanted, mut sum_n, mut n) = (0_usize, 0.0, 0_usize);
+        for at in side.take_while(|&at| apart_s(at) <= NEAR_S) {
+            wanted += usize::from(apart_s(at) <= near_s);
+            if apart_s(at) > near_s && n >= wanted {
+                break;
+            }
+            if setting.track.counted[at] {
+                sum_n += residuals_n[at];
+                n += 1;
+            }
         }
-        let side = if time_s < instant_s { &mut before } else { &mut after };
-        side.0 += residuals_n[at];
-        side.1 += 1.0;
-    }
-    (before.1 >= 5.0 && after.1 >= 5.0).then(|| after.0 / after.1 - before.0 / before.1)
+        (n >= 5).then(|| sum_n / n as f64)
+    };
+    let before_n = mean_n(&mut (range.start..middle).rev())?;
+    Some(mean_n(&mut (middle..range.end))? - before_n)
 }
 
 /// Time to either side in which a drive that starts, stops or turns may be what made the force jump, in s.
@@ -84,6 +91,22 @@ fn stirred(setting: &Setting<'_>, range: std::ops::Range<usize>) -> Vec<bool> {
     stirred
 }
 
+/// How many times larger than near any other start, stop or turn of the same recording a jump has to be to be one of its own:
+/// whatever friction or a drive does at one of them, it does at the others too.
+const ALONE: f64 = 3.0;
+/// Parts that a recording is cut into for that comparison, and of how many of them a start, stop or turn is needed for one.
+const PARTS: usize = 20;
+/// See [`PARTS`].
+const OTHERS: usize = 4;
+
+/// Whether a jump of `own_n` in the given part stands alone among the largest of the parts in which drives stir at all; its
+/// neighbours do not count, for it may reach into them.
+fn stands_alone(largest_n: &[Option<f64>; PARTS], part: usize, own_n: f64) -> bool {
+    let elsewhere = largest_n.iter().enumerate().filter(|(other, _)| other.abs_diff(part) > 1);
+    let jumps_n: Vec<f64> = elsewhere.filter_map(|(_, jump_n)| *jump_n).collect();
+    jumps_n.len() >= OTHERS && jumps_n.iter().all(|&jump_n| own_n > ALONE * jump_n)
+}
+
 /// Shapes (recording, instant in s) of the most likely steps: where the two sides of a cut differ most in their mean.
 pub(crate) fn shapes(setting: &Setting<'_>, state: &State) -> Vec<Vec<f64>> {
     let residuals = setting.residuals_n(state);
@@ -109,23 +132,32 @@ pub(crate) fn shapes(setting: &Setting<'_>, state: &State) -> Vec<Vec<f64>> {
             gains.push((gain, position));
             sum += residuals[at];
         }
-        let jumps = counted.iter().enumerate().step_by(5).map(|(position, &at)| {
+        let jump_at = |at: usize, near_s: f64| {
             let instant_s = setting.track.instants[at].moment.time_s;
-            (jump_n(setting, &residuals, range.clone(), instant_s, NEAR_S).unwrap_or(0.0).abs(), position)
-        });
-        for mut ranked in [gains, jumps.collect()] {
+            jump_n(setting, &residuals, range.clone(), instant_s, near_s).unwrap_or(0.0).abs()
+        };
+        let jumps: Vec<(f64, usize)> =
+            counted.iter().enumerate().step_by(5).map(|(position, &at)| (jump_at(at, NEAR_S), position)).collect();
+        let part = |position: usize| position * PARTS / n;
+        let mut largest_n = [None; PARTS];
+        for position in (0..n).step_by(5).filter(|&position| stirred[counted[position] - range.start]) {
+            let largest_n = &mut largest_n[part(position)];
+            *largest_n = Some(jump_at(counted[position], SHARP_S).max(largest_n.unwrap_or(0.0)));
+        }
+        for mut ranked in [gains, jumps] {
             let mut taken: Vec<usize> = Vec::new();
             ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             for (gain, position) in ranked {
-                if stirred[counted[position] - range.start] {
-                    continue;
-                }
                 if taken.len() == PER_RECORDING || gain <= 0.0 {
                     break;
                 }
+                let at = counted[position];
+                if stirred[at - range.start] && !stands_alone(&largest_n, part(position), jump_at(at, SHARP_S)) {
+                    continue;
+                }
                 if taken.iter().all(|&other| other.abs_diff(position) > n / 20) {
                     taken.push(position);
-                    shapes.push(vec![index as f64, setting.track.instants[counted[position]].moment.time_s]);
+                    shapes.push(vec![index as f64, setting.track.instants[at].moment.time_s]);
                 }
             }
         }

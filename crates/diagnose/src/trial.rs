@@ -115,7 +115,12 @@ pub fn among(
                     let guess = |beginning: &Beginning| {
                         (index, CandidateEffect { effect, shape: shape.clone(), sign, beginning: beginning.clone() })
                     };
-                    guesses.extend(beginnings.iter().map(guess));
+                    // After the last recording there is none that would tell.
+                    let tells = |beginning: &&Beginning| {
+                        let is_event = effect.kind() == Kind::Event && matches!(beginning, Beginning::GoesOn(_));
+                        !is_event || shape[0] + 1.0 < setting.track.recordings.len() as f64
+                    };
+                    guesses.extend(beginnings.iter().filter(tells).map(guess));
                 }
             }
             guesses

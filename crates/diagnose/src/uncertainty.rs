@@ -76,6 +76,10 @@ pub fn shape_errors(setting: &Setting<'_>, state: &State, index: usize, correlat
         .iter()
         .enumerate()
         .map(|(parameter, shape)| {
+            // Which recording is no quantity.
+            if guess.effect.kind() == Kind::Event && shape.unit == "1" {
+                return None;
+            }
             let here = state.fit.mean_square;
             let step = (0.05 * guess.shape[parameter].abs()).max(1e-3 * (shape.range.1 - shape.range.0).min(1.0));
             let at = |value: f64| {

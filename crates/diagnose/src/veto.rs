@@ -12,6 +12,7 @@ use pam_core::shift::shifted;
 
 use crate::coordinates::Coordinates;
 use crate::error::DiagnoseError;
+use crate::events;
 use crate::held_error::Left;
 use crate::hypothesis::{Beginning, CandidateEffect};
 use crate::nuisance::Nuisance;
@@ -78,6 +79,7 @@ fn without_denied(
 ) -> (Found, Option<&'static str>) {
     let nuisance = found.nuisance.clone();
     let setting = question.setting(track, &nuisance);
+    events::told_by(&setting, &mut found, heldout);
     let beside = beside(question, heldout, &found.best.state.model);
     let held = question.setting(heldout, &beside);
     let mut strongest_denied = None;
