@@ -202,6 +202,19 @@ mod tests {
     }
 
     #[test]
+    fn a_jump_that_is_larger_than_at_any_other_turn_stands_alone() {
+        let mut largest_n = [None; PARTS];
+        for part in [2, 5, 9, 14] {
+            largest_n[part] = Some(1.0);
+        }
+        assert!(stands_alone(&largest_n, 17, 3.5) && !stands_alone(&largest_n, 17, 2.5));
+        // Too few others, and what it may reach into.
+        assert!(!stands_alone(&largest_n, 5, 3.5));
+        largest_n[18] = Some(3.4);
+        assert!(stands_alone(&largest_n, 17, 3.5));
+    }
+
+    #[test]
     fn where_a_drive_starts_no_step_is_looked_for() {
         let (given, _) = stepped(0.0);
         let setting = given.setting();

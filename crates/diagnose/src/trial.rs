@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use pam_core::effects::{Effect, Kind, Seen, Shape, effect};
 use rayon::prelude::*;
 
+use crate::events;
 use crate::hypothesis::{Beginning, CandidateEffect, n_amplitudes};
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
@@ -170,7 +171,8 @@ pub fn among(
     let mut trials: Vec<Trial> = refined
         .into_par_iter()
         .filter_map(|(mean_square, guess)| {
-            if mean_square > (1.0 - LEAST_GAIN) * thin.fit.mean_square {
+            let is_other = guess.effect.kind() == Kind::Event && !events::is_even(setting, state, &guess);
+            if is_other || mean_square > (1.0 - LEAST_GAIN) * thin.fit.mean_square {
                 return Some(Trial { guess, mean_square, held_out: before.clone(), log_ratio: 0.0 });
             }
             let (held_out, is_pressed) = weigh(setting, state, &guess)?;
