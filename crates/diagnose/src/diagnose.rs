@@ -195,6 +195,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let question = DiagnosisProblem::new(&estimation, &model, limits);
     let SearchOutcome { track, mut found, knocks, mut sizes } = outcome;
     let held = (!holdout.is_empty()).then(|| rig::track(&holdout, &model, &rig)).transpose()?;
+    let held = held.map(|held| question.without_mistaken(&held));
     if let Some(held) = held.as_ref().filter(|_| knocks.is_none()) {
         found = veto::confirmed(&question, &track, found, held)?;
         sizes = Sizes::of(&found, &question.limits);

@@ -50,6 +50,7 @@ mod tangent;
 pub mod traces;
 pub mod track;
 pub mod trial;
+mod turns;
 pub mod uncertainty;
 pub mod verdict;
 mod veto;

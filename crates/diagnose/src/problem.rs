@@ -13,6 +13,7 @@ use crate::nuisance::{self, Nuisance};
 use crate::search::{Found, Limits, search};
 use crate::state::Setting;
 use crate::track::Track;
+use crate::turns;
 use crate::verdict::Sizes;
 
 /// What a search is made with, but for the track.
@@ -77,6 +78,7 @@ impl<'a> DiagnosisProblem<'a> {
     /// # Errors
     /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit; where they cannot be read back.
     pub fn answer(&self, track: Track, looked: &dyn Fn()) -> Result<SearchOutcome, DiagnoseError> {
+        let track = self.without_mistaken(&track);
         let (found, sizes) = self.search(&track, &self.limits, looked)?;
         let Some(first) = self.knocks(&found, &sizes, Residual::WithSpeed)? else {
             return Ok(SearchOutcome { track, found, knocks: None, sizes });
@@ -92,6 +94,13 @@ impl<'a> DiagnosisProblem<'a> {
         let knocks = self.knocks(&found, &sizes, Residual::Explained)?.unwrap_or_else(|| first.within_range());
         let sizes = sizes.with(&knocks);
         Ok(SearchOutcome { track, found, knocks: Some(knocks), sizes })
+    }
+
+    /// `track` without instants beside turns whose direction is mistaken.
+    pub(crate) fn without_mistaken(&self, track: &Track) -> Track {
+        let start = base::coordinates(self.model, &self.space);
+        let setting = self.setting(track, &nuisance::NONE);
+        turns::without_mistaken(&setting, &start, &self.model.force_model(), self.limits.sensor_floor_n)
     }
 
     /// The search on `track` alone, without the effects `excluded`.

@@ -117,6 +117,9 @@ impl Unturned {
         }
         let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
         slow.doubt(&resting, thresholds, &mut marks);
+        if carried == Bounds::UNKNOWN {
+            first_travel(&contraction, &mut marks);
+        }
         let mut states = from_marks(&marks, carried);
         if let Standstill::Slides { over_pa, share } = thresholds.standstill
             && !follows(over_pa, share)
@@ -143,6 +146,17 @@ impl Unturned {
         }
         states
     }
+}
+
+/// Travel from an unknown state in which friction may still turn over, in m: all that is no pre-sliding.
+const FIRST_M: f64 = 1.5e-4;
+
+/// Unsettles the beginning of the first motion, up to that travel.
+fn first_travel(contraction: &[f64], marks: &mut [i8]) {
+    let Some(first) = marks.iter().position(|mark| *mark != 0) else { return };
+    let rows = contraction.iter().zip(marks).skip(first);
+    rows.take_while(|(value, _)| (**value - contraction[first]).abs() < FIRST_M)
+        .for_each(|(_, mark)| *mark = 2 * mark.signum());
 }
 
 /// Lets what the pressure has made of friction before row `from` last until the length turns, or moves at all; `before` is the

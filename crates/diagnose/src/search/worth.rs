@@ -20,6 +20,10 @@ const STRONG_LOG_RATIO: f64 = 8.0;
 /// Times the mean square that the sensors leave beyond which the floor of a search is not theirs.
 const SENSORS: f64 = 4.0;
 
+/// Share of the mean square that is left anyway by which an effect must lower it to be worth a name: a third of that, root mean
+/// square. Of 25 healthy muscles none gains a thirtieth by any effect.
+const MATTERS: f64 = 0.1;
+
 /// Whether a trial gains more than chance and more than what does not matter; `further` where something was taken before, `whole` is
 /// what the base leaves beside a static map.
 pub(super) fn worth(tried: &Tried, further: bool, whole: &HeldOut, floor_square: f64, limits: &Limits) -> bool {
@@ -30,7 +34,7 @@ pub(super) fn worth(tried: &Tried, further: bool, whole: &HeldOut, floor_square:
     let whole = whole.mean_square() - floor_square;
     // What the sensors leave is the measure; what else no model gets below is no license to overlook.
     let measure = full_floor.min(SENSORS * limits.sensor_floor_n.powi(2));
-    let matters = limits.matters_above_n.map_or(0.25 * measure, |limit_n| limit_n * limit_n);
+    let matters = limits.matters_above_n.map_or(MATTERS * measure, |limit_n| limit_n * limit_n);
     let is_confirmed = limits.confirmed && !trial.guess.effect.is_static();
     let least_of_all = if is_confirmed { LEAST_OF_CONFIRMED } else { LEAST_OF_ALL };
     let least_log_ratio = if further { FURTHER_LOG_RATIO } else { LEAST_LOG_RATIO };
