@@ -27,6 +27,14 @@ impl Bounds {
         Self { low: state, high: state }
     }
 
+    pub(super) fn between(low: f64, high: f64) -> Self {
+        Self { low, high }
+    }
+
+    pub(super) fn ends(self) -> (f64, f64) {
+        (self.low, self.high)
+    }
+
     pub(super) fn middle(self) -> f64 {
         0.5 * (self.low + self.high)
     }
