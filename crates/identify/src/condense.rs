@@ -70,14 +70,8 @@ pub fn condense(
     stride: usize,
     weight: Option<&SampleWeight<'_>>,
 ) -> Result<Condensed, IdentifyError> {
-    let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
-    let stretch_rows = (n_rows / STRETCHES).max(1);
-    let mut plan: Vec<(usize, Range<usize>)> = Vec::new();
-    for (index, prepared) in recordings.iter().enumerate() {
-        let rows = prepared.recording.samples.n_rows();
-        let pieces = ((rows as f64 / stretch_rows as f64).round() as usize).max(1);
-        plan.extend((0..pieces).map(|piece| (index, piece * rows / pieces..(piece + 1) * rows / pieces)));
-    }
+    let n_rows: Vec<usize> = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).collect();
+    let plan = plan(&n_rows);
     let stretches: Result<Vec<Stretch>, IdentifyError> = plan
         .into_par_iter()
         .map(|(index, rows)| {
@@ -87,15 +81,36 @@ pub fn condense(
                 .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })
         })
         .collect();
-    let stretches = stretches?;
-    let mut total = Summary::new(columns.n_columns());
-    for stretch in &stretches {
-        total.merge(&stretch.summary);
-    }
-    Ok(Condensed { stretches, total })
+    Ok(Condensed::of(stretches?, columns.n_columns()))
 }
 
-fn condense_stretch(
+impl Condensed {
+    /// Of `stretches`, in order.
+    pub(crate) fn of(stretches: Vec<Stretch>, n_columns: usize) -> Self {
+        let mut total = Summary::new(n_columns);
+        for stretch in &stretches {
+            total.merge(&stretch.summary);
+        }
+        Self { stretches, total }
+    }
+}
+
+/// Stretches that recordings of so many rows are cut into: which recording, and which rows of it.
+pub(crate) fn plan(n_rows: &[usize]) -> Vec<(usize, Range<usize>)> {
+    let stretch_rows = (n_rows.iter().sum::<usize>() / STRETCHES).max(1);
+    let mut plan = Vec::new();
+    for (index, &rows) in n_rows.iter().enumerate() {
+        let pieces = ((rows as f64 / stretch_rows as f64).round() as usize).max(1);
+        plan.extend((0..pieces).map(|piece| (index, piece * rows / pieces..(piece + 1) * rows / pieces)));
+    }
+    plan
+}
+
+/// Condenses some rows of a recording, as [`condense`] does.
+///
+/// # Errors
+/// Where samples cannot be read back.
+pub(crate) fn condense_stretch(
     prepared: &Prepared,
     rows: Range<usize>,
     columns: &dyn Columns,

@@ -27,7 +27,8 @@ pub use crate::request::Request;
 /// [`IdentifyError`] names the recording and the remedy.
 pub fn check(request: Request) -> Result<Checked, IdentifyError> {
     let n_estimation = request.estimation.len();
-    let Request { estimation, validation, .. } = request;
+    let mut request = request;
+    let (estimation, validation) = (std::mem::take(&mut request.estimation), std::mem::take(&mut request.validation));
     let gates = gate(estimation.into_iter().chain(validation).collect())?;
     let strand_m = request.muscle.muscle.strand_length_m();
     for gated in &gates {
@@ -52,6 +53,11 @@ pub fn check(request: Request) -> Result<Checked, IdentifyError> {
             return Err(IdentifyError::Fault(fault));
         }
     }
+    of_gates(gates, n_estimation, request)
+}
+
+/// What was looked at, of which the first `n_estimation` are to be fitted; refuses too few samples and a constant pressure.
+pub(crate) fn of_gates(gates: Vec<Gated>, n_estimation: usize, request: Request) -> Result<Checked, IdentifyError> {
     let n_samples = gates[..n_estimation].iter().map(|gate| gate.quality.n_rows).sum();
     enough(&gates[0].recording.path, n_samples)?;
     let pressures = || gates[..n_estimation].iter().filter_map(|gate| gate.quality.channel("pressure"));
@@ -84,19 +90,19 @@ pub fn check(request: Request) -> Result<Checked, IdentifyError> {
 /// A request whose recordings have passed the gate.
 #[derive(Debug)]
 pub struct Checked {
-    gates: Vec<Gated>,
-    n_estimation: usize,
-    muscle: MuscleFile,
-    form: Form,
-    options: FitOptions,
-    loss: Loss,
-    free: Vec<Parameter>,
-    fix: Vec<(Parameter, f64)>,
-    length_play_m: Option<f64>,
-    pressure_play_pa: Option<f64>,
-    assumed: Assumed,
-    accept_implausible: bool,
-    unbounded: bool,
+    pub(crate) gates: Vec<Gated>,
+    pub(crate) n_estimation: usize,
+    pub(crate) muscle: MuscleFile,
+    pub(crate) form: Form,
+    pub(crate) options: FitOptions,
+    pub(crate) loss: Loss,
+    pub(crate) free: Vec<Parameter>,
+    pub(crate) fix: Vec<(Parameter, f64)>,
+    pub(crate) length_play_m: Option<f64>,
+    pub(crate) pressure_play_pa: Option<f64>,
+    pub(crate) assumed: Assumed,
+    pub(crate) accept_implausible: bool,
+    pub(crate) unbounded: bool,
 }
 
 impl Checked {
@@ -119,15 +125,7 @@ impl Checked {
     /// As [`Checked::identify`].
     pub fn identify_observed(mut self, observe: &(dyn Fn() + Sync)) -> Result<Identified, IdentifyError> {
         let validation = self.gates.split_off(self.n_estimation);
-        let from_noise = thresholds(&self.gates, &self.muscle.muscle);
-        let thresholds = Thresholds {
-            held_m: 0.0,
-            turn_m: 0.0,
-            standstill: from_noise.standstill,
-            length_m: self.length_play_m.unwrap_or(from_noise.length_m),
-            pressure_pa: self.pressure_play_pa.unwrap_or(from_noise.pressure_pa),
-        };
-        let finest_m = self.length_play_m.unwrap_or_else(|| finest_length_play_m(&self.gates, &self.muscle.muscle));
+        let (thresholds, finest_m) = self.thresholds();
         let largest_n_per_m =
             self.gates.iter().map(|gate| gate.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
         let force_noise_n = self.force_noise_n();
@@ -200,6 +198,22 @@ impl Checked {
         Ok(identified)
     }
 
+    /// Thresholds of the direction, as given or from the noise of the estimation recordings, and the play of the length that their
+    /// white noise alone allows, in m.
+    pub(crate) fn thresholds(&self) -> (Thresholds, f64) {
+        let gates = &self.gates[..self.gates.len().min(self.n_estimation)];
+        let from_noise = thresholds(gates, &self.muscle.muscle);
+        let thresholds = Thresholds {
+            held_m: 0.0,
+            turn_m: 0.0,
+            standstill: from_noise.standstill,
+            length_m: self.length_play_m.unwrap_or(from_noise.length_m),
+            pressure_pa: self.pressure_play_pa.unwrap_or(from_noise.pressure_pa),
+        };
+        let finest_m = self.length_play_m.unwrap_or_else(|| finest_length_play_m(gates, &self.muscle.muscle));
+        (thresholds, finest_m)
+    }
+
     /// Laws of friction at standstill, the one to be taken first; only one where it is assumed or makes no difference.
     fn judge_standstill(
         &self,
@@ -217,7 +231,7 @@ impl Checked {
     }
 
     /// White noise of the force over all estimation recordings.
-    fn force_noise_n(&self) -> f64 {
+    pub(crate) fn force_noise_n(&self) -> f64 {
         let (mut squares, mut rows) = (0.0, 0.0);
         for gate in &self.gates {
             if let Some(force) = gate.quality.channel("force") {
@@ -229,13 +243,15 @@ impl Checked {
         (squares / f64::max(rows, 1.0)).sqrt()
     }
 
-    fn model(&self, muscle: &Muscle, parameters: BaseParameters) -> ForceModel {
+    pub(crate) fn model(&self, muscle: &Muscle, parameters: BaseParameters) -> ForceModel {
         ForceModel::new(muscle, self.muscle.strand_modulus_pa, self.form, parameters)
     }
 
     /// What is moved, and what the recordings cannot identify. Twins whose shares the recordings do not tell are moved
     /// together: `C₁₀` and `C₀₁` as their sum, both frictions as that of the bladder.
-    fn search_space(&self, columns: &ForceColumns, condensed: &Condensed, noise_n: f64) -> (SearchSpace, Vec<Free>) {
+    pub(crate) fn search_space(
+        &self,
+        columns: &ForceColumns, condensed: &Condensed, noise_n: f64) -> (SearchSpace, Vec<Free>) {
         let fixed = [Parameter::C10, Parameter::C01].into_iter().any(|parameter| self.fixes(parameter));
         let judged = self.form == Form::Corrected;
         let mut bladder = match self.assumed.bladder {
@@ -412,7 +428,7 @@ impl Checked {
 }
 
 /// Refuses fewer samples than twice the columns.
-fn enough(path: &str, n_samples: usize) -> Result<(), IdentifyError> {
+pub(crate) fn enough(path: &str, n_samples: usize) -> Result<(), IdentifyError> {
     let needed = 2 * N_COLUMNS;
     if n_samples < needed {
         let (path, n_parameters) = (path.to_owned(), Parameter::ALL.len());

@@ -230,6 +230,12 @@ impl Direction {
         Ok(all)
     }
 
+    /// Of `n_rows` rows of which nothing is known.
+    pub fn nothing(n_rows: usize) -> Self {
+        let (states, settled) = (vec![0; n_rows], vec![false; n_rows]);
+        Self { states, known: settled.clone(), settled, left_out: Vec::new() }
+    }
+
     /// Leaves rows up to `row` unsettled and unknown.
     fn skip_to(&mut self, row: usize) {
         self.states.resize(row, 0);

@@ -19,6 +19,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
+    #[cfg(test)]
     pub(super) const UNKNOWN: Self = Self { low: -1.0, high: 1.0 };
     /// Bounds that are closer than this are a state.
     const CLOSE: f64 = 0.2;
