@@ -1,7 +1,7 @@
 //! Identification of recordings whose rows are in several places: shards answer, and what they answer is merged.
 //!
 //! In reading order: [`cut`] puts shards together into recordings, [`parts`] says which rows are whose, [`tile`] are rows that one
-//! place works on, [`mod@answer`] is what it finds there, [`merge`] puts answers together and asks the next question, [`conclude`]
+//! place works on, [`mod@answer`] is what it finds there, [`summarize`] its file, [`merge`] puts answers together and asks the next question, [`conclude`]
 //! fits.
 //!
 //! # Design
@@ -29,9 +29,10 @@ pub mod cut;
 pub mod error;
 pub mod merge;
 pub mod parts;
+pub mod summarize;
 pub mod tile;
 mod triangle;
 
-pub use answer::answer;
 pub use error::ShardError;
 pub use merge::{Step, advance};
+pub use summarize::{Head, summarize};
