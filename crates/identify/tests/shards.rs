@@ -156,17 +156,12 @@ fn sharded(shards: &[(Shard, Recording)]) -> (ModelArtifact, usize, f64) {
         let handed: usize = answers.iter().flat_map(|answer| &answer.edges).map(|rows| rows.time_s.len()).sum();
         match advance(request(Vec::new()), agreement.take(), &answers, &|| {}).unwrap() {
             Step::Ask(next) => agreement = Some(*next),
-            Step::Done(found) => {
-                let config = check_config();
+            Step::Done(found, config) => {
                 return (found.artifact(tool(), Vec::new(), config, 1), pass, handed as f64 / n_rows as f64);
             }
         }
     }
     panic!("not settled after {MOST_PASSES} passes");
-}
-
-fn check_config() -> pam_core::artifact::model::IdentifyConfig {
-    check(request(vec![log("isobaric-triangles", 0.1, 1, None).recording("r", 0..500)])).unwrap().config()
 }
 
 /// Largest relative difference of a value, and of a standard error; and of the figures of the fit.

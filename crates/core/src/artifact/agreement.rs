@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::identify_config::StandstillFit;
-use super::summary::{Ends, Shard, StretchPart};
+use super::summary::{Ends, Open, Shard, StretchPart};
 use super::{ArtifactError, Input, Tool};
 use crate::direction::{Carried, Standstill, Thresholds};
 use crate::quality::RecordingQuality;
@@ -155,6 +155,8 @@ pub enum Question {
         thresholds: Thresholds,
         /// How the shards begin.
         begins: Begins,
+        /// By recording and shard: the stretch that began before it.
+        open: Vec<Vec<Option<Open>>>,
     },
     /// How the model agrees.
     Tally {

@@ -107,14 +107,24 @@ pub struct Ends {
     pub moves: bool,
 }
 
-/// Part of one of the stretches that standard errors are judged by.
+/// One of the stretches that standard errors are judged by, which ends in these rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StretchPart {
     /// Number of the stretch within its recording.
     pub stretch: usize,
-    /// What its rows condense to.
+    /// What all of its rows condense to.
     pub triangle: Triangle,
+}
+
+/// A stretch that goes on in the next rows: to continue as if there were no border takes no more than this.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Open {
+    /// What has been folded so far, in whole blocks.
+    pub triangle: Triangle,
+    /// Rows of columns and force that wait for their block to be full, one after the other.
+    pub waiting: Vec<f64>,
 }
 
 /// Sums over samples beside a model.
@@ -189,8 +199,10 @@ pub enum Answer {
     },
     /// What eq. 11 is fitted to.
     Condensed {
-        /// By stretches.
+        /// The stretches that end in its rows.
         parts: Vec<StretchPart>,
+        /// The stretch that goes on after them.
+        open: Option<Open>,
         /// Where the direction ends.
         ends: Ends,
     },

@@ -4,9 +4,9 @@ use std::io;
 use std::ops::Range;
 
 use pam_core::artifact::agreement::{AgreementArtifact, CutRecording, Hypothesis, Question};
-use pam_core::artifact::summary::{Answer, Ends, Rows, StretchPart, Triangle};
+use pam_core::artifact::summary::{Answer, Ends, Open, Rows, StretchPart, Triangle};
 use pam_core::direction::{Carried, Direction, Standstill, Thresholds};
-use pam_core::force::columns::ForceColumns;
+use pam_core::force::columns::{ForceColumns, N_COLUMNS};
 use pam_core::force::{BaseParameters, ForceModel, Form};
 use pam_core::muscle::MuscleFile;
 use pam_core::quality::parts::sampled_chunks;
@@ -18,11 +18,12 @@ use rayon::prelude::*;
 use super::error::ShardError;
 use super::parts::{edges, parts};
 use super::tile::{Tile, rows_of};
-use super::triangle::triangle;
-use crate::condense::{condense_stretch, plan};
+use super::triangle::{summary, triangle};
+use crate::condense::{Folding, fold_rows, plan};
 use crate::error::IdentifyError;
 use crate::evaluate::{floor_stride, noise_squares, tally};
 use crate::faults::{shaken, spikes};
+use crate::prepare::Prepared;
 use crate::standstill::{Counts, changes_pa, condensed, travels};
 
 /// What all places know.
@@ -66,7 +67,11 @@ pub fn answer(
         Some(part) => {
             let samples = recording.samples.slice(part.held.start - start..part.held.end - start).map_err(unreadable)?;
             let tile = Tile::of(cut, &part, samples);
-            answer_of(&tile, &shared, index, &begins_of(&agreement.question, index, shard))?
+            let open = match &agreement.question {
+                Question::Condense { open, .. } => open[index][shard].as_ref(),
+                _ => None,
+            };
+            answer_of(&tile, &shared, index, &begins_of(&agreement.question, index, shard), open)?
         }
     };
     // What its gauge says of a sensor's range the shard alone knows.
@@ -103,7 +108,7 @@ fn nothing(question: &Question) -> Answer {
         },
         Question::Laws { .. } => Answer::Laws { triangles: Vec::new(), ends: Vec::new() },
         Question::Travels { .. } => Answer::Travels { triangles: Vec::new() },
-        Question::Condense { .. } => Answer::Condensed { parts: Vec::new(), ends: Ends::UNKNOWN },
+        Question::Condense { .. } => Answer::Condensed { parts: Vec::new(), open: None, ends: Ends::UNKNOWN },
         Question::Tally { .. } => Answer::Tallied { sums: TallySums::default(), ends: Ends::UNKNOWN },
     }
 }
@@ -123,7 +128,7 @@ fn sampled(cut: &CutRecording, rows: Range<usize>, recording: &Recording) -> io:
     for chunk in recording.samples.chunks() {
         let chunk = chunk?;
         for here in 0..chunk.n_rows() {
-            if (rows.start + chunk.first_row() + here) % CHUNK_ROWS % stride == 0 {
+            if ((rows.start + chunk.first_row() + here) % CHUNK_ROWS).is_multiple_of(stride) {
                 spread.iter_mut().zip(spikes::values(&chunk, here)).for_each(|(spread, value)| spread.push(value));
             }
         }
@@ -131,7 +136,7 @@ fn sampled(cut: &CutRecording, rows: Range<usize>, recording: &Recording) -> io:
     Ok(Answer::Sampled { sampled, spread, stuck: StuckRuns::of(recording, &cut.extent)? })
 }
 
-/// What `tile` of recording `index` answers, where it begins with `begins`.
+/// What `tile` of recording `index` answers, where it begins with `begins` and in a stretch that is `open`.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
@@ -140,6 +145,7 @@ pub(super) fn answer_of(
     shared: &Shared<'_>,
     index: usize,
     begins: &[Carried],
+    open: Option<&Open>,
 ) -> Result<Answer, IdentifyError> {
     let unreadable = |reason: io::Error| IdentifyError::Samples { path: tile.cut.name.clone(), reason };
     let Some(quality) = tile.quality() else { return Ok(nothing(&shared.agreement.question)) };
@@ -156,26 +162,12 @@ pub(super) fn answer_of(
         Question::Travels { thresholds, plays_m, first } => {
             turning(tile, quality, shared, *thresholds, plays_m, *first).map_err(unreadable)
         }
-        Question::Condense { thresholds, begins: assumed } => {
+        Question::Condense { thresholds, begins: assumed, .. } => {
             let (direction, ends) =
                 tile.direction(*thresholds, begins[0], assumed.at_rest[index]).map_err(unreadable)?;
             let prepared = tile.prepared(quality, direction);
-            let n_rows: Vec<usize> = shared.agreement.recordings.iter().map(|cut| cut.extent.n_rows).collect();
-            let stretches = plan(&n_rows).into_iter().filter(|(recording, _)| *recording == index).enumerate();
-            let owned = tile.first_row + tile.owned.start..tile.first_row + tile.owned.end;
-            let here = stretches.filter_map(|(stretch, (_, rows))| {
-                let rows = rows.start.max(owned.start)..rows.end.min(owned.end);
-                (rows.start < rows.end).then(|| (stretch, rows.start - tile.first_row..rows.end - tile.first_row))
-            });
-            let parts: io::Result<Vec<StretchPart>> = here
-                .collect::<Vec<_>>()
-                .into_par_iter()
-                .map(|(stretch, rows)| {
-                    let summary = condense_stretch(&prepared, rows, &shared.columns, 1, None)?;
-                    Ok(StretchPart { stretch, triangle: triangle(&summary) })
-                })
-                .collect();
-            Ok(Answer::Condensed { parts: parts.map_err(unreadable)?, ends })
+            let (parts, open) = stretches(tile, &prepared, shared, index, open).map_err(unreadable)?;
+            Ok(Answer::Condensed { parts, open, ends })
         }
         Question::Tally { thresholds, begins: assumed, theta } => {
             let (direction, ends) =
@@ -191,6 +183,43 @@ pub(super) fn answer_of(
             Ok(Answer::Tallied { sums: sums.sums(floor), ends })
         }
     }
+}
+
+/// The stretches of recording `index` that end in `tile`, and the one that goes on after it; the first one may be `open`.
+fn stretches(
+    tile: &Tile<'_>,
+    prepared: &Prepared,
+    shared: &Shared<'_>,
+    index: usize,
+    open: Option<&Open>,
+) -> io::Result<(Vec<StretchPart>, Option<Open>)> {
+    let n_rows: Vec<usize> = shared.agreement.recordings.iter().map(|cut| cut.extent.n_rows).collect();
+    let owned = tile.first_row + tile.owned.start..tile.first_row + tile.owned.end;
+    let of_recording = plan(&n_rows).into_iter().filter(|(recording, _)| *recording == index).enumerate();
+    let here = of_recording.map(|(stretch, (_, rows))| (stretch, rows));
+    let here: Vec<(usize, Range<usize>)> =
+        here.filter(|(_, rows)| rows.start < owned.end && owned.start < rows.end).collect();
+    let folded: io::Result<Vec<Folding>> = here
+        .par_iter()
+        .map(|(_, rows)| {
+            let begun = open.filter(|_| rows.start < owned.start);
+            let begun = begun.and_then(|open| Some(Folding::after(summary(&open.triangle)?, &open.waiting)));
+            let mut folding = begun.unwrap_or_else(|| Folding::new(N_COLUMNS));
+            let within = rows.start.max(owned.start) - tile.first_row..rows.end.min(owned.end) - tile.first_row;
+            fold_rows(&mut folding, prepared, within, &shared.columns, 1, None)?;
+            Ok(folding)
+        })
+        .collect();
+    let (mut parts, mut goes_on) = (Vec::new(), None);
+    for ((stretch, rows), folding) in here.into_iter().zip(folded?) {
+        if rows.end <= owned.end {
+            parts.push(StretchPart { stretch, triangle: triangle(&folding.finish()) });
+        } else {
+            let (folded, waiting) = folding.open();
+            goes_on = Some(Open { triangle: triangle(folded), waiting });
+        }
+    }
+    Ok((parts, goes_on))
 }
 
 /// Samples that no fit may count, rates, and where every law ends.

@@ -5,8 +5,8 @@ use std::ops::Range;
 use pam_core::artifact::agreement::{
     AgreementArtifact, Begins, CutRecording, Hypothesis, JudgedLaw, LawBegins, Question,
 };
-use pam_core::artifact::model::StandstillFit;
-use pam_core::artifact::summary::{Answer, Ends, Rows, StretchPart, SummaryArtifact, TallySums, Triangle};
+use pam_core::artifact::model::{IdentifyConfig, StandstillFit};
+use pam_core::artifact::summary::{Answer, Ends, Open, Rows, StretchPart, SummaryArtifact, TallySums, Triangle};
 use pam_core::direction::{Carried, Standstill, Thresholds};
 use pam_core::quality::RecordingQuality;
 use pam_core::quality::recording::Rates;
@@ -33,8 +33,8 @@ use crate::standstill::{self, turning_of, turning_plays_m, turning_rows};
 pub enum Step {
     /// Another question.
     Ask(Box<AgreementArtifact>),
-    /// The fit.
-    Done(Box<Identified>),
+    /// The fit, and its options as an artifact states them.
+    Done(Box<Identified>, IdentifyConfig),
 }
 
 /// Answers of all places in a recording, in order of their rows: the rows that are counted, and what was found in them.
@@ -44,6 +44,8 @@ struct Found {
     carried: Vec<Vec<Vec<Carried>>>,
     /// By law and recording.
     at_rest: Vec<Vec<bool>>,
+    /// The stretch that every shard should have gone on with, by recording and shard.
+    open: Vec<Vec<Option<Open>>>,
 }
 
 /// What follows from `summaries` of all shards, which answer `agreement`, or begin without one; the agreement's head (tool,
@@ -142,16 +144,17 @@ pub fn advance(
             let (_, finest_m) = checked.thresholds();
             let thresholds = turning_of(&left, thresholds, finest_m);
             let begins = guess(&agreement, thresholds.standstill);
-            agreement.question = Question::Condense { thresholds, begins };
+            let open = agreement.recordings.iter().map(|cut| vec![None; cut.shards.len()]).collect();
+            agreement.question = Question::Condense { thresholds, begins, open };
             Ok(Step::Ask(Box::new(agreement)))
         }
-        Question::Condense { thresholds, begins } => {
+        Question::Condense { thresholds, begins, open } => {
             let now = begins_of(&found, 0);
-            if now != begins {
-                agreement.question = Question::Condense { thresholds, begins: now };
+            if now != begins || found.open != open {
+                agreement.question = Question::Condense { thresholds, begins: now, open: found.open };
                 return Ok(Step::Ask(Box::new(agreement)));
             }
-            agreement.condensed = stretches(&found)?;
+            agreement.condensed = stretches(&found);
             let checked = conclude::checked(request, &agreement)?;
             let theta = conclude::theta(&checked, &agreement, observe)?;
             agreement.question = Question::Tally { thresholds, begins, theta };
@@ -161,7 +164,8 @@ pub fn advance(
             debug_assert_eq!(begins_of(&found, 0), begins, "directions were agreed on");
             let tallies: Vec<(Tally, [f64; 2])> = found.answers.iter().map(|answers| tallied(answers)).collect();
             let checked = conclude::checked(request, &agreement)?;
-            Ok(Step::Done(Box::new(conclude(checked, &agreement, thresholds, &tallies, observe)?)))
+            let config = checked.config();
+            Ok(Step::Done(Box::new(conclude(checked, &agreement, thresholds, &tallies, observe)?), config))
         }
     }
 }
@@ -209,7 +213,7 @@ fn judge_samples(
             }
         }
         let nowhere = recording_of(cut, Samples::from_columns(&[], &[], &[], &[]), Vec::new());
-        let samples = samples_of(all_rows.iter().copied());
+        let samples = samples_of(&all_rows);
         let quality = RecordingQuality::of_elsewhere(&nowhere, &cut.extent, &samples, &runs)
             .map_err(|reason| IdentifyError::Samples { path: cut.name.clone(), reason })?;
         let mut noises = spikes::noises(&quality).into_iter();
@@ -242,11 +246,13 @@ fn find(shared: &Shared<'_>, summaries: &[SummaryArtifact], order: &[Vec<usize>]
         answers: Vec::new(),
         carried: vec![Vec::new(); n_laws],
         at_rest: vec![vec![false; n_recordings]; n_laws],
+        open: Vec::new(),
     };
     for (index, cut) in shared.agreement.recordings.iter().enumerate() {
         let mut begins = vec![Carried::UNKNOWN; n_laws];
         let mut moves = vec![false; n_laws];
-        let mut answers = Vec::new();
+        let (mut answers, mut open) = (Vec::new(), None);
+        found.open.push(vec![None; cut.shards.len()]);
         found.carried.iter_mut().for_each(|law| law.push(vec![Carried::UNKNOWN; cut.shards.len()]));
         for part in parts(cut) {
             let answer = match part.shard {
@@ -256,13 +262,15 @@ fn find(shared: &Shared<'_>, summaries: &[SummaryArtifact], order: &[Vec<usize>]
                     for (law, begin) in found.carried.iter_mut().zip(&begins) {
                         law[index][shard] = if goes_on { *begin } else { Carried::UNKNOWN };
                     }
+                    found.open[index][shard] = open;
                     summaries[order[index][shard]].answer.clone()
                 }
                 None => {
                     let samples = divided(&part, cut, summaries, &order[index])?;
-                    answer_of(&Tile::of(cut, &part, samples), shared, index, &begins)?
+                    answer_of(&Tile::of(cut, &part, samples), shared, index, &begins, open.as_ref())?
                 }
             };
+            open = if let Answer::Condensed { open, .. } = &answer { open.clone() } else { None };
             let ends = ends_of(&answer);
             if ends.len() != n_laws {
                 let path = part.shard.map_or_else(|| cut.name.clone(), |shard| cut.shards[shard].path.clone());
@@ -311,7 +319,7 @@ fn divided(
         };
         handed.push(edge);
     }
-    Ok(samples_of(handed.into_iter()))
+    Ok(samples_of(&handed))
 }
 
 fn begins_of(found: &Found, law: usize) -> Begins {
@@ -427,25 +435,14 @@ fn mean_square(total: &Summary) -> f64 {
     total.residual_floor_square_sum() / total.n_rows().max(1) as f64
 }
 
-/// The stretches of every recording, whose parts may come from several places.
-fn stretches(found: &Found) -> Result<Vec<Vec<StretchPart>>, ShardError> {
+/// The stretches of every recording, each from the place where it ends.
+fn stretches(found: &Found) -> Vec<Vec<StretchPart>> {
     let of_recording = |answers: &Vec<Answer>| {
-        let mut stretches: Vec<(usize, Option<Summary>)> = Vec::new();
-        for answer in answers {
-            let Answer::Condensed { parts, .. } = answer else { continue };
-            for part in parts {
-                if stretches.last().is_none_or(|last| last.0 != part.stretch) {
-                    stretches.push((part.stretch, None));
-                }
-                if let Some((_, total)) = stretches.last_mut() {
-                    add(total, &part.triangle)?;
-                }
-            }
-        }
-        let whole = |(stretch, total): (usize, Option<Summary>)| {
-            total.map(|total| StretchPart { stretch, triangle: triangle(&total) })
-        };
-        Ok(stretches.into_iter().filter_map(whole).collect())
+        let parts = answers.iter().filter_map(|answer| match answer {
+            Answer::Condensed { parts, .. } => Some(parts),
+            _ => None,
+        });
+        parts.flatten().cloned().collect()
     };
     found.answers.iter().map(of_recording).collect()
 }

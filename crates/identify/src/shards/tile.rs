@@ -39,9 +39,9 @@ pub(super) fn recording_of(cut: &CutRecording, samples: Samples, segments: Vec<R
 }
 
 /// Samples of rows that were handed over, one after the other.
-pub(super) fn samples_of<'a>(rows: impl Iterator<Item = &'a Rows> + Clone) -> Samples {
+pub(super) fn samples_of(rows: &[&Rows]) -> Samples {
     let column = |of: for<'r> fn(&'r Rows) -> &'r [f64]| -> Vec<f64> {
-        rows.clone().flat_map(|rows| of(rows).iter().copied()).collect()
+        rows.iter().flat_map(|rows| of(rows).iter().copied()).collect()
     };
     let time_s = column(|rows| &rows.time_s);
     let pressure_pa = column(|rows| &rows.pressure_pa);
