@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Over which options that are for one process it says so in `--help`.
+/// Over these options in `--help`.
 const HEADING: &str = "Shards of recordings";
 
 /// Options of shards; flattened into the program's.

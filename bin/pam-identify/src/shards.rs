@@ -19,7 +19,10 @@ const PASSES: u32 = 7;
 
 /// Refuses what needs the rows of all shards at once.
 fn check(args: &Args, muscle: &MuscleFile) -> anyhow::Result<()> {
-    ensure!(args.form == FormArg::Corrected, "shards are fitted in the corrected form alone; identify in one for --form");
+    ensure!(
+        args.form == FormArg::Corrected,
+        "shards are fitted in the corrected form alone; identify in one for --form"
+    );
     ensure!(args.loss == LossArg::Square, "--loss huber weighs every row anew; identify in one for it");
     ensure!(
         muscle.fit.is_empty(),
@@ -55,9 +58,7 @@ pub(crate) fn summary(args: &Args, console: &Console, muscle_path: &Path) -> any
     inputs.push(Input::recording(&recording, InputRole::Estimation));
     let (path, sha256) = (recording.path.clone(), recording.sha256.clone());
     let shard = match &args.shards.shard {
-        Some(place) => {
-            Shard { recording: place.recording.clone(), number: place.number, of: place.of, path, sha256 }
-        }
+        Some(place) => Shard { recording: place.recording.clone(), number: place.number, of: place.of, path, sha256 },
         None => Shard { recording: path.clone(), number: 1, of: 1, path, sha256 },
     };
     let head = Head { tool: tool(), inputs, reading_sha256: digest(&read.options) };
@@ -84,6 +85,16 @@ pub(crate) fn merge(args: &Args, console: &Console, muscle_path: &Path) -> anyho
     let summaries: Result<Vec<SummaryArtifact>, _> =
         args.shards.from_summaries.iter().map(|path| SummaryArtifact::read(path)).collect();
     let summaries = summaries?;
+    for summary in &summaries {
+        ensure!(
+            summary.tool == tool(),
+            "{}: its summary is by {} {}; write it anew with this program, {}",
+            summary.shard.path,
+            summary.tool.name,
+            summary.tool.version,
+            tool().version
+        );
+    }
     let of_shards = summaries[0].inputs.iter().find(|input| input.role == InputRole::Muscle);
     ensure!(
         of_shards.is_some_and(|input| input.sha256 == muscle_input.sha256),

@@ -2,15 +2,16 @@
 
 use pam_core::artifact::model::{Assumed, BladderLaw, FrictionLaw, IdentifyConfig, Loss, StandstillFit};
 use pam_core::direction::Thresholds;
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
+use pam_core::force::columns::ForceColumns;
 use pam_core::force::{BaseParameters, ForceModel, Form, Parameter};
 use pam_core::muscle::{Dimension, Muscle, MuscleFile};
 
+use crate::check::enough;
 use crate::condense::{Condensed, condense};
 use crate::error::IdentifyError;
 use crate::evaluate::{evaluate, noise_floor_n};
 use crate::fit::{Fit, FitOptions, search};
-use crate::prepare::{Gated, Prepared, direct, finest_length_play_m, gate, redirect, thresholds};
+use crate::prepare::{Gated, Prepared, direct, finest_length_play_m, redirect, thresholds};
 use crate::problem::ForceProblem;
 use crate::search_space::{Free, LATEX_RATIO, SearchSpace};
 use crate::standstill;
@@ -18,74 +19,9 @@ use crate::unbounded::unbounded_fit;
 use crate::uncertainty::jackknife;
 use crate::{excitation, faults, geometry, report, robust};
 
+pub use crate::check::check;
 pub use crate::identified::Identified;
 pub use crate::request::Request;
-
-/// Looks at the recordings and for instrument faults; nothing is fitted.
-///
-/// # Errors
-/// [`IdentifyError`] names the recording and the remedy.
-pub fn check(request: Request) -> Result<Checked, IdentifyError> {
-    let n_estimation = request.estimation.len();
-    let mut request = request;
-    let (estimation, validation) = (std::mem::take(&mut request.estimation), std::mem::take(&mut request.validation));
-    let gates = gate(estimation.into_iter().chain(validation).collect())?;
-    let strand_m = request.muscle.muscle.strand_length_m();
-    for gated in &gates {
-        let path = || gated.recording.path.clone();
-        if !gated.recording.samples.has_force() {
-            return Err(IdentifyError::NoForce { path: path() });
-        }
-        if !request.accept_implausible {
-            continue;
-        }
-        if let Some(length) = gated.quality.channel("length")
-            && length.highest >= strand_m
-        {
-            let (length_mm, strand_mm) = (length.highest * 1e3, strand_m * 1e3);
-            return Err(IdentifyError::LengthBeyondStrand { path: path(), length_mm, strand_mm });
-        }
-    }
-    if !request.accept_implausible {
-        let fault = faults::find(&gates, &request.muscle.muscle)
-            .map_err(|reason| IdentifyError::Samples { path: gates[0].recording.path.clone(), reason })?;
-        if let Some(fault) = fault {
-            return Err(IdentifyError::Fault(fault));
-        }
-    }
-    of_gates(gates, n_estimation, request)
-}
-
-/// What was looked at, of which the first `n_estimation` are to be fitted; refuses too few samples and a constant pressure.
-pub(crate) fn of_gates(gates: Vec<Gated>, n_estimation: usize, request: Request) -> Result<Checked, IdentifyError> {
-    let n_samples = gates[..n_estimation].iter().map(|gate| gate.quality.n_rows).sum();
-    enough(&gates[0].recording.path, n_samples)?;
-    let pressures = || gates[..n_estimation].iter().filter_map(|gate| gate.quality.channel("pressure"));
-    let lowest_pa = pressures().map(|channel| channel.lowest).fold(f64::INFINITY, f64::min);
-    let highest_pa = pressures().map(|channel| channel.highest).fold(f64::NEG_INFINITY, f64::max);
-    // To the last digit: where a gauge is alive, what it cannot tell is held at its nominal value, with a word.
-    if highest_pa <= lowest_pa {
-        return Err(IdentifyError::ConstantPressure {
-            path: gates[0].recording.path.clone(),
-            pressure_kpa: 0.5e-3 * (lowest_pa + highest_pa),
-        });
-    }
-    Ok(Checked {
-        gates,
-        n_estimation,
-        muscle: request.muscle,
-        form: request.form,
-        options: request.options,
-        loss: request.loss,
-        free: request.free,
-        fix: request.fix,
-        length_play_m: request.length_play_m,
-        pressure_play_pa: request.pressure_play_pa,
-        assumed: request.assumed,
-        accept_implausible: request.accept_implausible,
-        unbounded: request.unbounded,
-    })
-}
 
 /// A request whose recordings have passed the gate.
 #[derive(Debug)]
@@ -251,7 +187,10 @@ impl Checked {
     /// together: `C₁₀` and `C₀₁` as their sum, both frictions as that of the bladder.
     pub(crate) fn search_space(
         &self,
-        columns: &ForceColumns, condensed: &Condensed, noise_n: f64) -> (SearchSpace, Vec<Free>) {
+        columns: &ForceColumns,
+        condensed: &Condensed,
+        noise_n: f64,
+    ) -> (SearchSpace, Vec<Free>) {
         let fixed = [Parameter::C10, Parameter::C01].into_iter().any(|parameter| self.fixes(parameter));
         let judged = self.form == Form::Corrected;
         let mut bladder = match self.assumed.bladder {
@@ -425,16 +364,6 @@ impl Checked {
             accept_implausible: self.accept_implausible,
         }
     }
-}
-
-/// Refuses fewer samples than twice the columns.
-pub(crate) fn enough(path: &str, n_samples: usize) -> Result<(), IdentifyError> {
-    let needed = 2 * N_COLUMNS;
-    if n_samples < needed {
-        let (path, n_parameters) = (path.to_owned(), Parameter::ALL.len());
-        return Err(IdentifyError::TooFewSamples { path, n_samples, n_parameters, needed });
-    }
-    Ok(())
 }
 
 /// Where the search and what follows it ended.

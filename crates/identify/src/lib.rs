@@ -8,6 +8,7 @@
 //! [`identify`] is all of it in order, and [`shards`] the same over rows in several places.
 
 pub mod band;
+mod check;
 pub mod condense;
 pub mod error;
 pub mod evaluate;

@@ -88,8 +88,7 @@ pub fn judge(
                 .collect();
             let found = found?;
             let directions: Vec<&Direction> = found.iter().collect();
-            let left =
-                mean_square(recordings, columns, &directions, Counts::Settled(stride), late.map(Vec::as_slice))?;
+            let left = mean_square(recordings, columns, &directions, Counts::Settled(stride), late.map(Vec::as_slice))?;
             Ok(StandstillFit { standstill, rmse_n: left.sqrt() })
         });
         fitted.collect()

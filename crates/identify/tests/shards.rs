@@ -141,9 +141,8 @@ fn summaries(
 ) -> Result<Vec<SummaryArtifact>, ShardError> {
     let head = Head { tool: tool(), inputs: Vec::new(), reading_sha256: String::new() };
     let muscle = request(Vec::new()).muscle;
-    let of = |(shard, recording): &(Shard, Recording)| {
-        summarize(recording, shard.clone(), &muscle, agreement, head.clone())
-    };
+    let of =
+        |(shard, recording): &(Shard, Recording)| summarize(recording, shard.clone(), &muscle, agreement, head.clone());
     shards.iter().map(of).collect()
 }
 

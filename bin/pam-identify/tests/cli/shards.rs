@@ -26,13 +26,15 @@ const SHARDS: [(&str, &str); 4] =
 
 fn summarize(bench: &Bench, options: &str) {
     for (name, shard) in SHARDS {
-        let words = format!("{name}.csv {shard} --muscle m.toml --summary-only --agreement agreed.json --out {name}.json");
+        let words =
+            format!("{name}.csv {shard} --muscle m.toml --summary-only --agreement agreed.json --out {name}.json");
         let output = bench.run(&format!("{words} {options}"));
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     }
 }
 
-const MERGE: &str = "--from-summaries a.json b.json c.json ramps.json --agreement agreed.json --muscle m.toml --out model.json";
+const MERGE: &str =
+    "--from-summaries a.json b.json c.json ramps.json --agreement agreed.json --muscle m.toml --out model.json";
 
 /// Runs passes until there is a model; gives its bytes and how many there were.
 fn passes(bench: &Bench, options: &str) -> (Vec<u8>, usize) {
@@ -116,7 +118,7 @@ fn what_does_not_go_together_is_one_line() {
     says(&format!("a.csv {TAIL} --shard run:2"), "");
     let version = std::fs::read_to_string(bench.folder.path().join("b.json")).unwrap();
     bench.file("version.json", version.replacen("\"version\":\"", "\"version\":\"9", 1));
-    says(&of("a.json version.json c.json"), "b.csv: was made with another version of the program than a.csv");
+    says(&of("a.json version.json c.json"), "b.csv: its summary is by pam-identify 9");
     bench.file("schema.json", version.replacen("pam-summary/1", "pam-summary/2", 1));
     says(&of("a.json schema.json c.json"), "schema is \"pam-summary/2\", expected \"pam-summary/1\"");
 
@@ -125,5 +127,8 @@ fn what_does_not_go_together_is_one_line() {
     says(MERGE, "a.csv: answers pass 1, and pass 2 is asked for; run it again");
     says(&of("a.json b.json c.json"), "the agreement is of other shards");
     says(&format!("{MERGE} --seed 2"), "was begun with other options of the fit");
-    says("good.csv --muscle m.toml --summary-only --agreement agreed.json --out s.json", "good.csv: the agreement is of other");
+    says(
+        "good.csv --muscle m.toml --summary-only --agreement agreed.json --out s.json",
+        "good.csv: the agreement is of other",
+    );
 }

@@ -201,8 +201,7 @@ mod tests {
         let rows: Vec<usize> =
             sampled_chunks(n).flat_map(|index| index * CHUNK_ROWS..((index + 1) * CHUNK_ROWS).min(n)).collect();
         let some = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-        let sampled =
-            Samples::from_columns(&some(&time_s), &some(&pressure_pa), &some(&length_m), &some(&force_n));
+        let sampled = Samples::from_columns(&some(&time_s), &some(&pressure_pa), &some(&length_m), &some(&force_n));
         (expected.length_rate_m_per_s, expected.pressure_rate_pa_per_s) = (0.0, 0.0);
         assert_eq!(RecordingQuality::of_elsewhere(&whole, &extent, &sampled, &stuck).unwrap(), expected);
     }

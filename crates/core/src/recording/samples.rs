@@ -128,8 +128,9 @@ impl Samples {
             let here = rows.start.max(chunk.first_row) - chunk.first_row
                 ..rows.end.min(chunk.first_row + chunk.n_rows) - chunk.first_row;
             let part = |column: &'_ [f64]| column.get(here.clone()).map(<[f64]>::to_vec).unwrap_or_default();
-            let columns = [chunk.time_s(), chunk.pressure_pa(), chunk.length_m(), chunk.force_n(), chunk.temperature_k()]
-                .map(part);
+            let columns =
+                [chunk.time_s(), chunk.pressure_pa(), chunk.length_m(), chunk.force_n(), chunk.temperature_k()]
+                    .map(part);
             builder.extend(std::array::from_fn(|column| columns[column].as_slice())).map_err(|failed| failed.source)?;
         }
         let sliced = builder.finish().map_err(|failed| failed.source)?;

@@ -65,7 +65,8 @@ pub fn answer(
     let mut found = match parts(cut).into_iter().find(|part| part.shard == Some(shard)) {
         None => nothing(&agreement.question),
         Some(part) => {
-            let samples = recording.samples.slice(part.held.start - start..part.held.end - start).map_err(unreadable)?;
+            let samples =
+                recording.samples.slice(part.held.start - start..part.held.end - start).map_err(unreadable)?;
             let tile = Tile::of(cut, &part, samples);
             let open = match &agreement.question {
                 Question::Condense { open, .. } => open[index][shard].as_ref(),
@@ -243,9 +244,7 @@ fn excluded(
     let ends: io::Result<Vec<Ends>> = laws
         .par_iter()
         .zip(begins)
-        .map(|(&standstill, &begin)| {
-            Ok(tile.direction(Thresholds { standstill, ..thresholds }, begin, false)?.1)
-        })
+        .map(|(&standstill, &begin)| Ok(tile.direction(Thresholds { standstill, ..thresholds }, begin, false)?.1))
         .collect();
     Ok(Answer::Excluded {
         spikes,
@@ -255,6 +254,9 @@ fn excluded(
         ends: ends?,
     })
 }
+
+/// Where the direction ends under a law, and what its hypotheses leave, each with its index.
+type OfLaw = (Ends, Vec<(usize, Triangle)>);
 
 /// What hypotheses of friction at standstill leave.
 #[expect(clippy::too_many_arguments, reason = "all of them are parts of one question")]
@@ -269,29 +271,31 @@ fn judged(
     stride: usize,
 ) -> Result<Answer, IdentifyError> {
     let unreadable = |reason: io::Error| IdentifyError::Samples { path: tile.cut.name.clone(), reason };
-    let found: io::Result<Vec<(Direction, Ends)>> = laws
-        .par_iter()
-        .zip(begins)
-        .map(|(&standstill, &(begin, at_rest))| {
-            tile.direction(Thresholds { standstill, ..thresholds }, begin, at_rest)
+    let direction = |law: usize| {
+        let (begin, at_rest) = begins[law];
+        tile.direction(Thresholds { standstill: laws[law], ..thresholds }, begin, at_rest)
+    };
+    let prepared = tile.prepared(quality, direction(0).map_err(unreadable)?.0);
+    let late = if hypotheses.iter().any(|hypothesis| hypothesis.late) { changes_pa(&prepared)? } else { Vec::new() };
+    // One direction after the other, as each is as long as the recording.
+    let found: io::Result<Vec<OfLaw>> = (0..laws.len())
+        .into_par_iter()
+        .map(|law| {
+            let (direction, ends) = direction(law)?;
+            let of_law = hypotheses.iter().enumerate().filter(|(_, hypothesis)| hypothesis.law == law);
+            let triangles = of_law.map(|(index, hypothesis)| {
+                let change_pa = hypothesis.late.then_some(late.as_slice());
+                let counts = Counts::Settled(stride);
+                let rows = tile.strided(stride);
+                Ok((index, triangle(&condensed(&prepared, rows, &shared.columns, &direction, counts, change_pa)?)))
+            });
+            Ok((ends, triangles.collect::<io::Result<Vec<(usize, Triangle)>>>()?))
         })
         .collect();
-    let found = found.map_err(unreadable)?;
-    let prepared = tile.prepared(quality, found[0].0.clone());
-    let late =
-        if hypotheses.iter().any(|hypothesis| hypothesis.late) { changes_pa(&prepared)? } else { Vec::new() };
-    let triangles: io::Result<Vec<Triangle>> = hypotheses
-        .par_iter()
-        .map(|hypothesis| {
-            let change_pa = hypothesis.late.then_some(late.as_slice());
-            let (direction, counts) = (&found[hypothesis.law].0, Counts::Settled(stride));
-            let summary =
-                condensed(&prepared, tile.strided(stride), &shared.columns, direction, counts, change_pa)?;
-            Ok(triangle(&summary))
-        })
-        .collect();
-    let triangles = triangles.map_err(unreadable)?;
-    Ok(Answer::Laws { triangles, ends: found.into_iter().map(|(_, ends)| ends).collect() })
+    let (ends, triangles): (Vec<Ends>, Vec<Vec<(usize, Triangle)>>) = found.map_err(unreadable)?.into_iter().unzip();
+    let mut triangles = triangles.concat();
+    triangles.sort_by_key(|(index, _)| *index);
+    Ok(Answer::Laws { triangles: triangles.into_iter().map(|(_, triangle)| triangle).collect(), ends })
 }
 
 /// What travels of turning leave in the first rows of a recording.

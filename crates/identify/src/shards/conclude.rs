@@ -12,6 +12,7 @@ use super::answer::Shared;
 use super::error::ShardError;
 use super::tile::recording_of;
 use super::triangle::summary;
+use crate::check::{enough, of_gates, within_strand};
 use crate::condense::{Condensed, Stretch, plan};
 use crate::error::IdentifyError;
 use crate::evaluate::{Evaluation, Tally, noise_floor_of};
@@ -19,7 +20,7 @@ use crate::excitation;
 use crate::faults::ranges;
 use crate::fit::{Fit, search};
 use crate::identified::Identified;
-use crate::identify::{Checked, enough, of_gates};
+use crate::identify::Checked;
 use crate::prepare::{Gated, Prepared};
 use crate::problem::ForceProblem;
 use crate::report;
@@ -39,10 +40,13 @@ pub(super) fn checked(request: Request, agreement: &AgreementArtifact) -> Result
         Some(Gated { recording: recording_of(cut, nothing(), Vec::new()), quality })
     });
     let gates: Vec<Gated> = gated.collect();
-    if !request.accept_implausible
-        && let Some(fault) = gates.iter().find_map(|gate| ranges::check(gate, &request.muscle.muscle))
-    {
-        return Err(IdentifyError::Fault(fault).into());
+    let muscle = &request.muscle.muscle;
+    for gate in &gates {
+        if request.accept_implausible {
+            within_strand(gate, muscle.strand_length_m())?;
+        } else if let Some(fault) = ranges::check(gate, muscle) {
+            return Err(IdentifyError::Fault(fault).into());
+        }
     }
     let n_recordings = gates.len();
     Ok(of_gates(gates, n_recordings, request)?)
@@ -149,7 +153,8 @@ pub(super) fn conclude(
         Some(standstill) => vec![StandstillFit { standstill, rmse_n: f64::NAN }],
         None => judged(agreement).unwrap_or_default(),
     };
-    let prepared = |Gated { recording, quality }: Gated| Prepared { recording, quality, direction: Direction::nothing(0) };
+    let prepared =
+        |Gated { recording, quality }: Gated| Prepared { recording, quality, direction: Direction::nothing(0) };
     let muscle = checked.muscle.clone();
     let estimation: Vec<Prepared> = checked.gates.into_iter().map(prepared).collect();
     for (prepared, (tally, _)) in estimation.iter().zip(tallies) {

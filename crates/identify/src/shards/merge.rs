@@ -1,12 +1,10 @@
 //! Answers put together, and the next question.
 
-use std::ops::Range;
-
 use pam_core::artifact::agreement::{
     AgreementArtifact, Begins, CutRecording, Hypothesis, JudgedLaw, LawBegins, Question,
 };
 use pam_core::artifact::model::{IdentifyConfig, StandstillFit};
-use pam_core::artifact::summary::{Answer, Ends, Open, Rows, StretchPart, SummaryArtifact, TallySums, Triangle};
+use pam_core::artifact::summary::{Answer, Rows, StretchPart, SummaryArtifact, TallySums, Triangle};
 use pam_core::direction::{Carried, Standstill, Thresholds};
 use pam_core::quality::RecordingQuality;
 use pam_core::quality::recording::Rates;
@@ -14,12 +12,12 @@ use pam_core::quality::stuck::StuckRuns;
 use pam_core::recording::Samples;
 use pam_optim::summary::Summary;
 
-use super::answer::{Shared, answer_of};
+use super::answer::Shared;
 use super::conclude::{self, conclude};
 use super::cut::{alike, recordings};
 use super::error::ShardError;
-use super::parts::{Part, parts};
-use super::tile::{Tile, recording_of, samples_of};
+use super::gather::{Found, find};
+use super::tile::{recording_of, samples_of};
 use super::triangle::{summary, triangle};
 use crate::error::IdentifyError;
 use crate::evaluate::Tally;
@@ -37,17 +35,6 @@ pub enum Step {
     Done(Box<Identified>, IdentifyConfig),
 }
 
-/// Answers of all places in a recording, in order of their rows: the rows that are counted, and what was found in them.
-struct Found {
-    answers: Vec<Vec<Answer>>,
-    /// What every shard should have begun with, by law, recording and shard.
-    carried: Vec<Vec<Vec<Carried>>>,
-    /// By law and recording.
-    at_rest: Vec<Vec<bool>>,
-    /// The stretch that every shard should have gone on with, by recording and shard.
-    open: Vec<Vec<Option<Open>>>,
-}
-
 /// What follows from `summaries` of all shards, which answer `agreement`, or begin without one; the agreement's head (tool,
 /// inputs, options) is left empty. `request` has no recordings; its muscle, laws and options are those of the fit.
 ///
@@ -63,7 +50,8 @@ pub fn advance(
     let asked = agreement.as_ref().map_or(1, |agreement| agreement.pass);
     for summary in summaries {
         let known = |cut: &CutRecording| cut.shards.contains(&summary.shard);
-        let n_known = |agreement: &AgreementArtifact| agreement.recordings.iter().map(|cut| cut.shards.len()).sum::<usize>();
+        let n_known =
+            |agreement: &AgreementArtifact| agreement.recordings.iter().map(|cut| cut.shards.len()).sum::<usize>();
         if let Some(agreement) = &agreement
             && (!agreement.recordings.iter().any(known) || summaries.len() != n_known(agreement))
         {
@@ -98,7 +86,7 @@ pub fn advance(
             agreement.begins = laws
                 .iter()
                 .enumerate()
-                .map(|(law, &standstill)| LawBegins { standstill, begins: begins_of(&found, law) })
+                .map(|(law, &standstill)| LawBegins { standstill, begins: found.begins(law) })
                 .collect();
             let checked = conclude::checked(request, &agreement)?;
             match checked.assumed.standstill {
@@ -113,7 +101,7 @@ pub fn advance(
             Ok(Step::Ask(Box::new(agreement)))
         }
         Question::Laws { thresholds, laws, begins, hypotheses, stride } => {
-            let now: Vec<Begins> = (0..laws.len()).map(|law| begins_of(&found, law)).collect();
+            let now: Vec<Begins> = (0..laws.len()).map(|law| found.begins(law)).collect();
             for (&standstill, begins) in laws.iter().zip(&now) {
                 agreement.begins.retain(|known| known.standstill != standstill);
                 agreement.begins.push(LawBegins { standstill, begins: begins.clone() });
@@ -149,7 +137,7 @@ pub fn advance(
             Ok(Step::Ask(Box::new(agreement)))
         }
         Question::Condense { thresholds, begins, open } => {
-            let now = begins_of(&found, 0);
+            let now = found.begins(0);
             if now != begins || found.open != open {
                 agreement.question = Question::Condense { thresholds, begins: now, open: found.open };
                 return Ok(Step::Ask(Box::new(agreement)));
@@ -161,7 +149,7 @@ pub fn advance(
             Ok(Step::Ask(Box::new(agreement)))
         }
         Question::Tally { thresholds, begins, .. } => {
-            debug_assert_eq!(begins_of(&found, 0), begins, "directions were agreed on");
+            debug_assert_eq!(found.begins(0), begins, "directions were agreed on");
             let tallies: Vec<(Tally, [f64; 2])> = found.answers.iter().map(|answers| tallied(answers)).collect();
             let checked = conclude::checked(request, &agreement)?;
             let config = checked.config();
@@ -231,99 +219,6 @@ fn judge_samples(
     };
     agreement.question = Question::Exclude { thresholds, leaps_by, laws };
     Ok(Step::Ask(Box::new(agreement)))
-}
-
-/// Answers of shards and of what cuts divide, in order of the rows.
-fn find(shared: &Shared<'_>, summaries: &[SummaryArtifact], order: &[Vec<usize>]) -> Result<Found, ShardError> {
-    let question = &shared.agreement.question;
-    let n_laws = match question {
-        Question::Sample {} | Question::Travels { .. } => 0,
-        Question::Exclude { laws, .. } | Question::Laws { laws, .. } => laws.len(),
-        Question::Condense { .. } | Question::Tally { .. } => 1,
-    };
-    let n_recordings = shared.agreement.recordings.len();
-    let mut found = Found {
-        answers: Vec::new(),
-        carried: vec![Vec::new(); n_laws],
-        at_rest: vec![vec![false; n_recordings]; n_laws],
-        open: Vec::new(),
-    };
-    for (index, cut) in shared.agreement.recordings.iter().enumerate() {
-        let mut begins = vec![Carried::UNKNOWN; n_laws];
-        let mut moves = vec![false; n_laws];
-        let (mut answers, mut open) = (Vec::new(), None);
-        found.open.push(vec![None; cut.shards.len()]);
-        found.carried.iter_mut().for_each(|law| law.push(vec![Carried::UNKNOWN; cut.shards.len()]));
-        for part in parts(cut) {
-            let answer = match part.shard {
-                Some(shard) => {
-                    // At the beginning of a segment nothing is carried.
-                    let goes_on = cut.segments.iter().all(|segment| segment[0] != part.owned.start);
-                    for (law, begin) in found.carried.iter_mut().zip(&begins) {
-                        law[index][shard] = if goes_on { *begin } else { Carried::UNKNOWN };
-                    }
-                    found.open[index][shard] = open;
-                    summaries[order[index][shard]].answer.clone()
-                }
-                None => {
-                    let samples = divided(&part, cut, summaries, &order[index])?;
-                    answer_of(&Tile::of(cut, &part, samples), shared, index, &begins, open.as_ref())?
-                }
-            };
-            open = if let Answer::Condensed { open, .. } = &answer { open.clone() } else { None };
-            let ends = ends_of(&answer);
-            if ends.len() != n_laws {
-                let path = part.shard.map_or_else(|| cut.name.clone(), |shard| cut.shards[shard].path.clone());
-                return Err(ShardError::Lacks { path, pass: shared.agreement.pass - 1 });
-            }
-            for (law, ends) in ends.iter().enumerate() {
-                begins[law] = ends.carried;
-                moves[law] |= ends.moves;
-            }
-            answers.push(answer);
-        }
-        for (at_rest, moves) in found.at_rest.iter_mut().zip(&moves) {
-            at_rest[index] = !moves;
-        }
-        found.answers.push(answers);
-    }
-    Ok(found)
-}
-
-/// Where an answer says that the direction ends, law by law.
-fn ends_of(answer: &Answer) -> Vec<Ends> {
-    match answer {
-        Answer::Extent {} | Answer::Sampled { .. } | Answer::Travels { .. } => Vec::new(),
-        Answer::Excluded { ends, .. } | Answer::Laws { ends, .. } => ends.clone(),
-        Answer::Condensed { ends, .. } | Answer::Tallied { ends, .. } => vec![*ends],
-    }
-}
-
-/// The rows of a part that a cut divides, from both sides of it.
-fn divided(
-    part: &Part,
-    cut: &CutRecording,
-    summaries: &[SummaryArtifact],
-    order: &[usize],
-) -> Result<Samples, ShardError> {
-    let mut handed: Vec<&Rows> = Vec::new();
-    for (shard, &[start, end]) in cut.rows.iter().enumerate() {
-        let rows: Range<usize> = part.held.start.max(start)..part.held.end.min(end);
-        if rows.start >= rows.end {
-            continue;
-        }
-        let summary = &summaries[order[shard]];
-        let is_it = |edge: &&Rows| edge.first_row == rows.start && edge.time_s.len() == rows.len();
-        let Some(edge) = summary.edges.iter().find(is_it) else {
-            return Err(ShardError::Lacks { path: summary.shard.path.clone(), pass: summary.pass });
-        };
-        handed.push(edge);
-    }
-    Ok(samples_of(&handed))
-}
-
-fn begins_of(found: &Found, law: usize) -> Begins {
-    Begins { carried: found.carried[law].clone(), at_rest: found.at_rest[law].clone() }
 }
 
 /// What shards most likely begin with under a law.

@@ -27,6 +27,7 @@ pub mod answer;
 pub mod conclude;
 pub mod cut;
 pub mod error;
+mod gather;
 pub mod merge;
 pub mod parts;
 pub mod summarize;

@@ -41,9 +41,11 @@ pub fn summarize(
     let (pass, edges, answer) = match agreement {
         None => (1, Vec::new(), Answer::Extent {}),
         Some(agreement) => {
-            let place = agreement.recordings.iter().enumerate().find_map(|(index, cut)| {
-                Some((index, cut.shards.iter().position(|known| *known == shard)?))
-            });
+            let place = agreement
+                .recordings
+                .iter()
+                .enumerate()
+                .find_map(|(index, cut)| Some((index, cut.shards.iter().position(|known| *known == shard)?)));
             let place = place.ok_or_else(|| ShardError::Unknown { path: shard.path.clone() })?;
             if head.reading_sha256 != agreement.reading_sha256 {
                 let other = agreement.recordings[0].shards[0].path.clone();
