@@ -3,7 +3,7 @@
 
 def page(results):
     lines = ["# Fleets: what they cost, and what is found", "",
-             "Written by `scripts/fleet/measure`, `prove-since`, `prove-group` and `test-slurm` from `results.json`; not edited by hand.", ""]
+             "Written by `scripts/fleet/measure`, `prove-since`, `prove-group`, `prove-shards` and `test-slurm` from `results.json`; not edited by hand.", ""]
     fleets = [results["fleets"][size] for size in sorted(results.get("fleets", {}), key=int)]
     if fleets:
         lines += [
@@ -62,6 +62,8 @@ def page(results):
         lines += together(results["group"])
     if "two_lengths" in results:
         lines += two_lengths(results["two_lengths"])
+    if "shards" in results:
+        lines += shards(results["shards"])
     if "slurm" in results:
         lines += ["## Slurm", "", results["slurm"], ""]
     if "machine" in results:
@@ -99,3 +101,28 @@ def two_lengths(real):
     lines += [f"| {one['name']} | {', '.join(one['alone']) or '-'} | {one['base_all_n']:.2f} N | {one['alone_all_n']:.2f} N | {one['together_all_n']:.2f} N "
               f"| {one['noise_floor_n']:.2f} N |" for one in real["muscles"]]
     return [*lines, ""]
+
+
+def shards(proof):
+    """Recordings whose rows are in several places, beside one process."""
+    lines = ["## Shards", ""]
+    if "cuttings" in proof:
+        lines += [
+            "`pam-identify --summary-only` and `--from-summaries` beside one process (`scripts/fleet/prove-shards`). Cut at random, two to five "
+            "times; one of the cuts lies in the middle of the longest rest, in that of the longest motion, at a gap or beside it, or at a border "
+            "of what is worked on at a time; a recording that is not cut stands beside. Largest relative difference over all cuttings; "
+            "directions, excluded samples, noise and thresholds are equal in all of them.", "",
+            "| recording | rows | cuttings | passes, at most | parameter | standard error | RMSE and other figures | rows handed over, at most |",
+            "|---|---:|---:|---:|---:|---:|---:|---:|",
+        ]
+        lines += [f"| {one['what']} | {one['rows']:.0f} | {one['cuttings']:.0f} | {one['passes']:.0f} | {one['parameter']:.1e} | {one['stderr']:.1e} "
+                  f"| {one['figure']:.1e} | {one['handed_percent']:.0f} % |" for one in proof["cuttings"]]
+        lines.append("")
+    if "long" in proof:
+        one = proof["long"]
+        lines += [
+            f"One recording of {one['rows']} rows without a gap, in {one['files']} files of {one['file_mb']:.0f} MB: {one['passes']} passes, processor time "
+            f"{one['shard_s']:.0f} s for a shard in all of them and {one['merging_s']:.0f} s for merging, {one['whole_s']:.0f} s in one process; summaries "
+            f"of at most {one['summary_mb']:.1f} MB; largest relative difference {one['difference']:.1e}.", "",
+        ]
+    return lines

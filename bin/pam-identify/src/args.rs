@@ -9,6 +9,8 @@ use pam_core::direction::Standstill;
 use pam_core::force::{Form, Parameter};
 use pam_core::spelling::number;
 
+use crate::shard_args::ShardArgs;
+
 /// Identify a force model of a pneumatic muscle from bench recordings.
 ///
 /// Reads recordings of pressure, length and force, checks what they are good for, fits eq. 11 (gas, rubber,
@@ -25,12 +27,17 @@ use pam_core::spelling::number;
                   pam-identify --example=channels --out bench.toml\n\n\
                   Example: what is in this log, before anything is fitted?\n  \
                   pam-identify log.lvm --muscle muscle.toml --channels bench.toml --check\n\n\
+                  Example: a recording in three files, each on a machine of its own; repeat all four until there is a model\n  \
+                  pam-identify part1.csv --muscle muscle.toml --shard run:1/3 --summary-only --agreement a.json --out s1.json\n  \
+                  … likewise part2.csv and part3.csv, --shard run:2/3 and run:3/3, s2.json and s3.json\n  \
+                  pam-identify --from-summaries s1.json s2.json s3.json --muscle muscle.toml --agreement a.json --out \
+                  model.json\n\n\
                   Exit codes: 0 done and accepted; 1 done and rejected (did not converge, above --max-rmse-n, or \
                   parameters that no muscle has, unless with --accept-implausible); 2 input or usage."
 )]
 pub(crate) struct Args {
     /// Recordings to fit; - is standard input.
-    #[arg(value_name = "LOG", required_unless_present = "example")]
+    #[arg(value_name = "LOG", required_unless_present_any = ["example", "from_summaries"])]
     pub(crate) logs: Vec<PathBuf>,
 
     /// Muscle file: dimensions as measured, and which of them to fit; --example writes one.
@@ -135,6 +142,9 @@ pub(crate) struct Args {
         conflicts_with_all = ["logs", "muscle", "holdout", "figure"]
     )]
     pub(crate) example: Option<Example>,
+
+    #[command(flatten)]
+    pub(crate) shards: ShardArgs,
 
     #[command(flatten)]
     pub(crate) read: ReadArgs,

@@ -3,6 +3,8 @@
 mod args;
 mod figure;
 mod run;
+mod shard_args;
+mod shards;
 mod tables;
 
 fn main() -> std::process::ExitCode {

@@ -17,7 +17,7 @@ use pam_identification::report::implausible;
 use pam_report::PictureFormat;
 
 use crate::args::{Args, BladderArg, Example, FormArg, FrictionArg};
-use crate::{figure, tables};
+use crate::{figure, shards, tables};
 
 /// What `--example` writes.
 const MUSCLE: &str = include_str!("../../../configs/muscle-nominal.toml");
@@ -43,6 +43,13 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         }
     }
     args.check_parameters()?;
+    if args.shards.summary_only {
+        return shards::summary(args, &console, muscle_path);
+    }
+    if !args.shards.from_summaries.is_empty() {
+        return shards::merge(args, &console, muscle_path);
+    }
+    ensure!(args.shards.agreement.is_none(), "--agreement is for --summary-only or --from-summaries");
     let from_stdin = args.logs.iter().chain(&args.holdout).filter(|path| path.as_os_str() == "-").count();
     ensure!(from_stdin <= 1, "standard input can be read once only; name the other recordings as files");
     for held_out in &args.holdout {
@@ -80,8 +87,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let progress = console.progress("searching", u64::from(args.starts) * u64::from(args.iterations));
     let found = checked.identify_observed(&|| progress.advance(1))?;
     drop(progress);
-    let tool = Tool { name: "pam-identify".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() };
-    let mut artifact = found.artifact(tool, hashes, config, args.run.seed);
+    let mut artifact = found.artifact(tool(), hashes, config, args.run.seed);
     artifact.muscle_name = muscle.name.clone();
     for prepared in found.estimation.iter().chain(&found.validation) {
         artifact.warnings.extend(spikes::warning(&prepared.recording, &prepared.quality)?);
@@ -128,6 +134,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     Ok(verdict(args, &console, &found, &artifact, apart.as_ref()))
 }
 
+/// This program.
+pub(crate) fn tool() -> Tool {
+    Tool { name: "pam-identify".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() }
+}
+
 /// Publishes model and figure together.
 fn write(
     console: &Console,
@@ -147,7 +158,7 @@ fn write(
     Ok(publish(outputs, console)?)
 }
 
-fn verdict(
+pub(crate) fn verdict(
     args: &Args,
     console: &Console,
     found: &Identified,
@@ -180,7 +191,7 @@ fn verdict(
     Verdict::Accepted
 }
 
-fn request(
+pub(crate) fn request(
     args: &Args,
     form: Form,
     muscle: MuscleFile,
@@ -223,7 +234,7 @@ fn compare_forms(request: Request, console: &Console, artifact: &ModelArtifact) 
     if console.is_quiet() { Ok(String::new()) } else { Ok(tables::forms(artifact, &second)) }
 }
 
-fn read_muscle(path: &Path) -> anyhow::Result<(MuscleFile, Input)> {
+pub(crate) fn read_muscle(path: &Path) -> anyhow::Result<(MuscleFile, Input)> {
     let (muscle, text) = MuscleFile::read_with_text(path)?;
     let sha256 = sha256_hex(text.as_bytes());
     Ok((muscle, Input { path: path.display().to_string(), sha256, role: InputRole::Muscle }))

@@ -4,7 +4,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use schemars::JsonSchema;
 
-use pam_core::artifact::{ChangeArtifact, GroupArtifact};
+use pam_core::artifact::{AgreementArtifact, ChangeArtifact, GroupArtifact, SummaryArtifact};
 use pam_core::recording::ChannelsFile;
 
 use crate::message::Message;
@@ -16,6 +16,11 @@ const CHANNELS: &str = "channels";
 const SINCE: &str = "since";
 /// Option, and kind of schema, of what the muscles of one rig share.
 const GROUP: &str = "group";
+
+/// Option, and kind of schema, of what shards agree on; the summaries of shards have a schema as well.
+const AGREEMENT: &str = "agreement";
+/// See [`AGREEMENT`].
+const SUMMARY: &str = "summary";
 
 /// Gives the text of a JSON schema.
 pub(crate) type Schema = fn() -> String;
@@ -29,8 +34,15 @@ pub(crate) fn schema<T: JsonSchema>() -> String {
 pub(crate) fn with_options(command: Command, has_artifact: bool) -> Command {
     let reads = command.get_arguments().any(|argument| argument.get_id() == CHANNELS);
     let has = |id: &str| command.get_arguments().any(|argument| argument.get_id() == id);
-    let kinds =
-        [("artifact", has_artifact), ("messages", true), (CHANNELS, reads), (SINCE, has(SINCE)), (GROUP, has(GROUP))];
+    let kinds = [
+        ("artifact", has_artifact),
+        ("messages", true),
+        (CHANNELS, reads),
+        (SINCE, has(SINCE)),
+        (GROUP, has(GROUP)),
+        (SUMMARY, has(AGREEMENT)),
+        (AGREEMENT, has(AGREEMENT)),
+    ];
     let of: Vec<&str> = kinds.into_iter().filter(|(_, known)| *known).map(|(kind, _)| kind).collect();
     let help = match (has_artifact, reads) {
         (true, true) => {
@@ -79,6 +91,8 @@ pub(crate) fn asked_for(
             CHANNELS => schema::<ChannelsFile>,
             SINCE => schema::<ChangeArtifact>,
             GROUP => schema::<GroupArtifact>,
+            SUMMARY => schema::<SummaryArtifact>,
+            AGREEMENT => schema::<AgreementArtifact>,
             "artifact" => artifact.unwrap_or(schema::<Message>),
             _ => schema::<Message>,
         };

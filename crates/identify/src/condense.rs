@@ -70,14 +70,8 @@ pub fn condense(
     stride: usize,
     weight: Option<&SampleWeight<'_>>,
 ) -> Result<Condensed, IdentifyError> {
-    let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
-    let stretch_rows = (n_rows / STRETCHES).max(1);
-    let mut plan: Vec<(usize, Range<usize>)> = Vec::new();
-    for (index, prepared) in recordings.iter().enumerate() {
-        let rows = prepared.recording.samples.n_rows();
-        let pieces = ((rows as f64 / stretch_rows as f64).round() as usize).max(1);
-        plan.extend((0..pieces).map(|piece| (index, piece * rows / pieces..(piece + 1) * rows / pieces)));
-    }
+    let n_rows: Vec<usize> = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).collect();
+    let plan = plan(&n_rows);
     let stretches: Result<Vec<Stretch>, IdentifyError> = plan
         .into_par_iter()
         .map(|(index, rows)| {
@@ -87,26 +81,61 @@ pub fn condense(
                 .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })
         })
         .collect();
-    let stretches = stretches?;
-    let mut total = Summary::new(columns.n_columns());
-    for stretch in &stretches {
-        total.merge(&stretch.summary);
-    }
-    Ok(Condensed { stretches, total })
+    Ok(Condensed::of(stretches?, columns.n_columns()))
 }
 
-fn condense_stretch(
+impl Condensed {
+    /// Of `stretches`, in order.
+    pub(crate) fn of(stretches: Vec<Stretch>, n_columns: usize) -> Self {
+        let mut total = Summary::new(n_columns);
+        for stretch in &stretches {
+            total.merge(&stretch.summary);
+        }
+        Self { stretches, total }
+    }
+}
+
+/// Stretches that recordings of so many rows are cut into: which recording, and which rows of it.
+pub(crate) fn plan(n_rows: &[usize]) -> Vec<(usize, Range<usize>)> {
+    let stretch_rows = (n_rows.iter().sum::<usize>() / STRETCHES).max(1);
+    let mut plan = Vec::new();
+    for (index, &rows) in n_rows.iter().enumerate() {
+        let pieces = ((rows as f64 / stretch_rows as f64).round() as usize).max(1);
+        plan.extend((0..pieces).map(|piece| (index, piece * rows / pieces..(piece + 1) * rows / pieces)));
+    }
+    plan
+}
+
+/// Condenses some rows of a recording, as [`condense`] does.
+///
+/// # Errors
+/// Where samples cannot be read back.
+pub(crate) fn condense_stretch(
     prepared: &Prepared,
     rows: Range<usize>,
     columns: &dyn Columns,
     stride: usize,
     weight: Option<&SampleWeight<'_>>,
 ) -> std::io::Result<Summary> {
+    let mut folding = Folding::new(columns.n_columns());
+    fold_rows(&mut folding, prepared, rows, columns, stride, weight)?;
+    Ok(folding.finish())
+}
+
+/// Folds some rows of a recording in, as [`condense`] does.
+///
+/// # Errors
+/// Where samples cannot be read back.
+pub(crate) fn fold_rows(
+    folding: &mut Folding,
+    prepared: &Prepared,
+    rows: Range<usize>,
+    columns: &dyn Columns,
+    stride: usize,
+    weight: Option<&SampleWeight<'_>>,
+) -> std::io::Result<()> {
     let width = columns.n_columns() + 1;
-    let mut summary = Summary::new(columns.n_columns());
-    let mut block = vec![0.0; BLOCK_ROWS * width];
     let mut row = vec![0.0; width];
-    let mut filled = 0;
     let mut next = rows.start.next_multiple_of(stride);
     for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
         let chunk = prepared.recording.samples.chunk(index)?;
@@ -118,19 +147,56 @@ fn condense_stretch(
                 row[width - 1] = force_n[here];
                 if row.iter().all(|value| value.is_finite()) {
                     let factor = weight.map_or(1.0, |weight| weight(force_n[here], &row[..width - 1]).sqrt());
-                    for (column, value) in row.iter().enumerate() {
-                        block[column * BLOCK_ROWS + filled] = factor * value;
-                    }
-                    filled += 1;
-                    if filled == BLOCK_ROWS {
-                        summary.fold(&mut block, filled);
-                        filled = 0;
-                    }
+                    folding.push(&row, factor);
                 }
             }
             next += stride;
         }
     }
-    summary.fold_part(&mut block, filled);
-    Ok(summary)
+    Ok(())
+}
+
+/// Rows on their way into a summary, block by block.
+#[derive(Debug, Clone)]
+pub(crate) struct Folding {
+    summary: Summary,
+    block: Vec<f64>,
+    filled: usize,
+}
+
+impl Folding {
+    pub(crate) fn new(n_columns: usize) -> Self {
+        Self::after(Summary::new(n_columns), &[])
+    }
+
+    /// After some blocks, and rows that wait for theirs to be full.
+    pub(crate) fn after(summary: Summary, waiting: &[f64]) -> Self {
+        let width = summary.n_columns() + 1;
+        let mut folding = Self { summary, block: vec![0.0; BLOCK_ROWS * width], filled: 0 };
+        waiting.chunks_exact(width).for_each(|row| folding.push(row, 1.0));
+        folding
+    }
+
+    fn push(&mut self, row: &[f64], factor: f64) {
+        for (column, value) in row.iter().enumerate() {
+            self.block[column * BLOCK_ROWS + self.filled] = factor * value;
+        }
+        self.filled += 1;
+        if self.filled == BLOCK_ROWS {
+            self.summary.fold(&mut self.block, self.filled);
+            self.filled = 0;
+        }
+    }
+
+    /// What has been folded in whole blocks, and the rows that wait, one after the other.
+    pub(crate) fn open(&self) -> (&Summary, Vec<f64>) {
+        let n_columns = self.summary.n_columns();
+        let row = |row: usize| (0..=n_columns).map(move |column| self.block[column * BLOCK_ROWS + row]);
+        (&self.summary, (0..self.filled).flat_map(row).collect())
+    }
+
+    pub(crate) fn finish(mut self) -> Summary {
+        self.summary.fold_part(&mut self.block, self.filled);
+        self.summary
+    }
 }

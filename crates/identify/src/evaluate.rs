@@ -1,134 +1,22 @@
 //! A model against recordings: statistics of the residual, and traces for figures.
 
+use std::ops::Range;
+
 use pam_core::artifact::model::FitStatistics;
 use pam_core::direction::Thresholds;
 use pam_core::effects::AugmentedModel;
 use pam_core::force::ForceModel;
 use pam_core::motion::Instant;
 use pam_core::quality::channel::whole_noise_std;
+use pam_core::recording::CHUNK_ROWS;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;
 use crate::predict::walk_augmented;
 use crate::prepare::Prepared;
-use crate::trace::{every, trace_stride};
-
-/// Where a model first gave no number.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NoForceAt {
-    /// Time, in s.
-    pub time_s: f64,
-    /// Gauge pressure, in Pa.
-    pub pressure_pa: f64,
-    /// Length, in m.
-    pub length_m: f64,
-}
-
-/// Sums over samples whose direction is settled.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Tally {
-    n_samples: usize,
-    n_unsettled: usize,
-    /// Samples that would count, had the model a force for them, and the first of them.
-    n_without_force: usize,
-    first_without_force: Option<NoForceAt>,
-    residuals: f64,
-    residual_squares: f64,
-    unsettled_squares: f64,
-    largest: f64,
-    forces: f64,
-    force_squares: f64,
-    first_force_n: f64,
-}
-
-impl Tally {
-    pub(crate) fn push(&mut self, force_n: f64, model_n: f64, at: impl FnOnce() -> NoForceAt) {
-        let residual_n = force_n - model_n;
-        // Its square is what is summed.
-        if !(residual_n * residual_n).is_finite() {
-            self.n_without_force += 1;
-            self.first_without_force.get_or_insert_with(at);
-            return;
-        }
-        if self.n_samples == 0 {
-            self.first_force_n = force_n;
-        }
-        self.n_samples += 1;
-        self.residuals += residual_n;
-        self.residual_squares += residual_n * residual_n;
-        self.largest = self.largest.max(residual_n.abs());
-        // Relative to the first force, so that a large mean costs no digits.
-        let relative_n = force_n - self.first_force_n;
-        self.forces += relative_n;
-        self.force_squares += relative_n * relative_n;
-    }
-
-    fn push_unsettled(&mut self, force_n: f64, model_n: f64) {
-        let residual_n = force_n - model_n;
-        if (residual_n * residual_n).is_finite() {
-            self.n_unsettled += 1;
-            self.unsettled_squares += residual_n * residual_n;
-        }
-    }
-
-    fn merge(&mut self, other: &Self) {
-        self.n_unsettled += other.n_unsettled;
-        self.unsettled_squares += other.unsettled_squares;
-        self.n_without_force += other.n_without_force;
-        self.first_without_force = self.first_without_force.or(other.first_without_force);
-        if other.n_samples == 0 {
-            return;
-        }
-        if self.n_samples == 0 {
-            self.first_force_n = other.first_force_n;
-        }
-        let shift_n = other.first_force_n - self.first_force_n;
-        let n = other.n_samples as f64;
-        self.force_squares += other.force_squares + 2.0 * shift_n * other.forces + n * shift_n * shift_n;
-        self.forces += other.forces + n * shift_n;
-        self.n_samples += other.n_samples;
-        self.residuals += other.residuals;
-        self.residual_squares += other.residual_squares;
-        self.largest = self.largest.max(other.largest);
-    }
-
-    /// Refuses statistics over nothing, or over what is left after a model gave no force.
-    fn judge(&self, prepared: &Prepared, model: &ForceModel) -> Result<(), IdentifyError> {
-        let path = || prepared.recording.path.clone();
-        if let Some(at) = self.first_without_force {
-            let n_counted = self.n_samples + self.n_without_force;
-            return Err(without_force(path(), self.n_without_force, n_counted, at, model));
-        }
-        if self.n_samples == 0 {
-            return Err(IdentifyError::NothingCounted { path: path(), n_rows: prepared.recording.samples.n_rows() });
-        }
-        Ok(())
-    }
-
-    /// Mean residual, in N.
-    pub(crate) fn mean_n(&self) -> f64 {
-        self.residuals / self.n_samples.max(1) as f64
-    }
-
-    pub(crate) fn statistics(&self) -> FitStatistics {
-        let n = self.n_samples.max(1) as f64;
-        let spread = (self.force_squares - self.forces * self.forces / n).max(f64::MIN_POSITIVE);
-        let share = self.residual_squares / spread;
-        // A force that never varies, as under a dead weight, leaves nothing of itself to explain.
-        let share = if share.is_finite() { share } else { 1.0 };
-        FitStatistics {
-            rmse_n: (self.residual_squares / n).sqrt(),
-            rmse_all_n: ((self.residual_squares + self.unsettled_squares)
-                / (self.n_samples + self.n_unsettled).max(1) as f64)
-                .sqrt(),
-            max_n: self.largest,
-            r2: 1.0 - share,
-            fit_percent: 100.0 * (1.0 - share.sqrt()),
-            n_samples: self.n_samples,
-            n_unsettled: self.n_unsettled,
-        }
-    }
-}
+pub use crate::tally::NoForceAt;
+pub(crate) use crate::tally::Tally;
+use crate::trace::{every, stride_of, trace_stride};
 
 /// Statistics of every recording and of all together.
 #[derive(Debug, Clone)]
@@ -146,7 +34,7 @@ pub struct Evaluation {
 /// [`IdentifyError::NothingCounted`] where none does, [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn evaluate(recordings: &[Prepared], model: &ForceModel) -> Result<Evaluation, IdentifyError> {
     let tally = |prepared: &Prepared| {
-        let tally = tally(prepared, model)
+        let tally = tally(prepared, model, 0..prepared.recording.samples.n_rows())
             .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
         tally.judge(prepared, model)?;
         Ok(tally)
@@ -253,7 +141,7 @@ pub fn without_force(path: String, n: usize, n_counted: usize, at: NoForceAt, mo
 }
 
 impl Evaluation {
-    fn of(tallies: &[Tally]) -> Self {
+    pub(crate) fn of(tallies: &[Tally]) -> Self {
         let mut together = Tally::default();
         tallies.iter().for_each(|tally| together.merge(tally));
         Self {
@@ -263,16 +151,20 @@ impl Evaluation {
     }
 }
 
-fn tally(prepared: &Prepared, model: &ForceModel) -> std::io::Result<Tally> {
+/// Sums over `rows` of a recording.
+///
+/// # Errors
+/// Where samples cannot be read back.
+pub(crate) fn tally(prepared: &Prepared, model: &ForceModel, rows: Range<usize>) -> std::io::Result<Tally> {
     let samples = &prepared.recording.samples;
-    let parts: std::io::Result<Vec<Tally>> = (0..samples.n_chunks())
+    let parts: std::io::Result<Vec<Tally>> = (rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS))
         .into_par_iter()
         .map(|index| {
             let chunk = samples.chunk(index)?;
             let mut tally = Tally::default();
             let (pressure_pa, length_m, force_n) = (chunk.pressure_pa(), chunk.length_m(), chunk.force_n());
-            for here in 0..chunk.n_rows() {
-                let row = chunk.first_row() + here;
+            for row in rows.start.max(chunk.first_row())..rows.end.min(chunk.first_row() + chunk.n_rows()) {
+                let here = row - chunk.first_row();
                 let model_n = model.force_n(pressure_pa[here], length_m[here], prepared.direction.sign(row));
                 if prepared.direction.is_settled(row) {
                     tally.push(force_n[here], model_n, || NoForceAt {
@@ -300,42 +192,67 @@ fn tally(prepared: &Prepared, model: &ForceModel) -> std::io::Result<Tally> {
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn noise_floor_n(recordings: &[Prepared], model: &ForceModel) -> Result<f64, IdentifyError> {
+    let squares: Result<Vec<(usize, [f64; 2])>, IdentifyError> = recordings
+        .iter()
+        .map(|prepared| {
+            let n_rows = prepared.recording.samples.n_rows();
+            Ok((n_rows, noise_squares(prepared, model, floor_stride(n_rows), 0..n_rows)?))
+        })
+        .collect();
+    Ok(noise_floor_of(&squares?))
+}
+
+/// The same from the rows of every recording and their [`noise_squares`].
+pub(crate) fn noise_floor_of(recordings: &[(usize, [f64; 2])]) -> f64 {
     let (mut squares, mut rows) = (0.0, 0.0);
-    for prepared in recordings {
-        let channel = |name: &str| prepared.quality.channel(name);
-        // A pressure wanders by itself at the pulse of its valve, and the force with it.
-        let noise_pa = channel("pressure").map_or(0.0, |channel| channel.colored_noise);
-        let [noise_m, noise_n] = ["length", "force"].map(|name| {
-            channel(name)
-                .map_or(0.0, |channel| whole_noise_std(channel.noise, channel.colored_noise, prepared.quality.period_s))
-        });
-        let stride = trace_stride(prepared);
-        let trace = every(
-            prepared,
-            model,
-            stride * (prepared.recording.samples.n_rows().div_ceil(stride) / FLOOR_SAMPLES).max(1),
-        )?;
-        let (mut sum, mut count) = (0.0, 0.0);
-        for index in 0..trace.time_s.len() {
-            let (pressure_pa, length_m, direction) =
-                (trace.pressure_pa[index], trace.length_m[index], trace.direction[index]);
-            let force_n = |p: f64, l: f64| model.force_n(p, l, direction);
-            // Steps of the noise itself: a chord is what noise sees.
-            let by_pressure_n =
-                0.5 * (force_n(pressure_pa + noise_pa, length_m) - force_n(pressure_pa - noise_pa, length_m));
-            let by_length_n =
-                0.5 * (force_n(pressure_pa, length_m + noise_m) - force_n(pressure_pa, length_m - noise_m));
-            let square = noise_n * noise_n + by_pressure_n * by_pressure_n + by_length_n * by_length_n;
-            if square.is_finite() {
-                sum += square;
-                count += 1.0;
-            }
-        }
-        let n = prepared.recording.samples.n_rows() as f64;
+    for &(n_rows, [sum, count]) in recordings {
+        let n = n_rows as f64;
         squares += n * sum / f64::max(count, 1.0);
         rows += n;
     }
-    Ok((squares / f64::max(rows, 1.0)).sqrt())
+    (squares / f64::max(rows, 1.0)).sqrt()
+}
+
+/// Rows from one sample that the noise floor is averaged over to the next, in a recording of so many.
+pub(crate) fn floor_stride(n_rows: usize) -> usize {
+    let stride = stride_of(n_rows);
+    stride * (n_rows.div_ceil(stride) / FLOOR_SAMPLES).max(1)
+}
+
+/// What noise does to the residual at every `stride`-th of `rows`: sum of squares in N², and how many there are.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub(crate) fn noise_squares(
+    prepared: &Prepared,
+    model: &ForceModel,
+    stride: usize,
+    rows: Range<usize>,
+) -> Result<[f64; 2], IdentifyError> {
+    let channel = |name: &str| prepared.quality.channel(name);
+    // A pressure wanders by itself at the pulse of its valve, and the force with it.
+    let noise_pa = channel("pressure").map_or(0.0, |channel| channel.colored_noise);
+    let [noise_m, noise_n] = ["length", "force"].map(|name| {
+        channel(name)
+            .map_or(0.0, |channel| whole_noise_std(channel.noise, channel.colored_noise, prepared.quality.period_s))
+    });
+    let trace = every(prepared, model, stride, rows)?;
+    let (mut sum, mut count) = (0.0, 0.0);
+    for index in 0..trace.time_s.len() {
+        let (pressure_pa, length_m, direction) =
+            (trace.pressure_pa[index], trace.length_m[index], trace.direction[index]);
+        let force_n = |p: f64, l: f64| model.force_n(p, l, direction);
+        // Steps of the noise itself: a chord is what noise sees.
+        let by_pressure_n =
+            0.5 * (force_n(pressure_pa + noise_pa, length_m) - force_n(pressure_pa - noise_pa, length_m));
+        let by_length_n = 0.5 * (force_n(pressure_pa, length_m + noise_m) - force_n(pressure_pa, length_m - noise_m));
+        let square = noise_n * noise_n + by_pressure_n * by_pressure_n + by_length_n * by_length_n;
+        if square.is_finite() {
+            sum += square;
+            count += 1.0;
+        }
+    }
+    Ok([sum, count])
 }
 
 /// Samples of one recording that the noise floor is averaged over, about.

@@ -2,15 +2,16 @@
 
 use pam_core::artifact::model::{Assumed, BladderLaw, FrictionLaw, IdentifyConfig, Loss, StandstillFit};
 use pam_core::direction::Thresholds;
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
+use pam_core::force::columns::ForceColumns;
 use pam_core::force::{BaseParameters, ForceModel, Form, Parameter};
 use pam_core::muscle::{Dimension, Muscle, MuscleFile};
 
+use crate::check::enough;
 use crate::condense::{Condensed, condense};
 use crate::error::IdentifyError;
 use crate::evaluate::{evaluate, noise_floor_n};
 use crate::fit::{Fit, FitOptions, search};
-use crate::prepare::{Gated, Prepared, direct, finest_length_play_m, gate, redirect, thresholds};
+use crate::prepare::{Gated, Prepared, direct, finest_length_play_m, redirect, thresholds};
 use crate::problem::ForceProblem;
 use crate::search_space::{Free, LATEX_RATIO, SearchSpace};
 use crate::standstill;
@@ -18,85 +19,26 @@ use crate::unbounded::unbounded_fit;
 use crate::uncertainty::jackknife;
 use crate::{excitation, faults, geometry, report, robust};
 
+pub use crate::check::check;
 pub use crate::identified::Identified;
 pub use crate::request::Request;
-
-/// Looks at the recordings and for instrument faults; nothing is fitted.
-///
-/// # Errors
-/// [`IdentifyError`] names the recording and the remedy.
-pub fn check(request: Request) -> Result<Checked, IdentifyError> {
-    let n_estimation = request.estimation.len();
-    let Request { estimation, validation, .. } = request;
-    let gates = gate(estimation.into_iter().chain(validation).collect())?;
-    let strand_m = request.muscle.muscle.strand_length_m();
-    for gated in &gates {
-        let path = || gated.recording.path.clone();
-        if !gated.recording.samples.has_force() {
-            return Err(IdentifyError::NoForce { path: path() });
-        }
-        if !request.accept_implausible {
-            continue;
-        }
-        if let Some(length) = gated.quality.channel("length")
-            && length.highest >= strand_m
-        {
-            let (length_mm, strand_mm) = (length.highest * 1e3, strand_m * 1e3);
-            return Err(IdentifyError::LengthBeyondStrand { path: path(), length_mm, strand_mm });
-        }
-    }
-    if !request.accept_implausible {
-        let fault = faults::find(&gates, &request.muscle.muscle)
-            .map_err(|reason| IdentifyError::Samples { path: gates[0].recording.path.clone(), reason })?;
-        if let Some(fault) = fault {
-            return Err(IdentifyError::Fault(fault));
-        }
-    }
-    let n_samples = gates[..n_estimation].iter().map(|gate| gate.quality.n_rows).sum();
-    enough(&gates[0].recording.path, n_samples)?;
-    let pressures = || gates[..n_estimation].iter().filter_map(|gate| gate.quality.channel("pressure"));
-    let lowest_pa = pressures().map(|channel| channel.lowest).fold(f64::INFINITY, f64::min);
-    let highest_pa = pressures().map(|channel| channel.highest).fold(f64::NEG_INFINITY, f64::max);
-    // To the last digit: where a gauge is alive, what it cannot tell is held at its nominal value, with a word.
-    if highest_pa <= lowest_pa {
-        return Err(IdentifyError::ConstantPressure {
-            path: gates[0].recording.path.clone(),
-            pressure_kpa: 0.5e-3 * (lowest_pa + highest_pa),
-        });
-    }
-    Ok(Checked {
-        gates,
-        n_estimation,
-        muscle: request.muscle,
-        form: request.form,
-        options: request.options,
-        loss: request.loss,
-        free: request.free,
-        fix: request.fix,
-        length_play_m: request.length_play_m,
-        pressure_play_pa: request.pressure_play_pa,
-        assumed: request.assumed,
-        accept_implausible: request.accept_implausible,
-        unbounded: request.unbounded,
-    })
-}
 
 /// A request whose recordings have passed the gate.
 #[derive(Debug)]
 pub struct Checked {
-    gates: Vec<Gated>,
-    n_estimation: usize,
-    muscle: MuscleFile,
-    form: Form,
-    options: FitOptions,
-    loss: Loss,
-    free: Vec<Parameter>,
-    fix: Vec<(Parameter, f64)>,
-    length_play_m: Option<f64>,
-    pressure_play_pa: Option<f64>,
-    assumed: Assumed,
-    accept_implausible: bool,
-    unbounded: bool,
+    pub(crate) gates: Vec<Gated>,
+    pub(crate) n_estimation: usize,
+    pub(crate) muscle: MuscleFile,
+    pub(crate) form: Form,
+    pub(crate) options: FitOptions,
+    pub(crate) loss: Loss,
+    pub(crate) free: Vec<Parameter>,
+    pub(crate) fix: Vec<(Parameter, f64)>,
+    pub(crate) length_play_m: Option<f64>,
+    pub(crate) pressure_play_pa: Option<f64>,
+    pub(crate) assumed: Assumed,
+    pub(crate) accept_implausible: bool,
+    pub(crate) unbounded: bool,
 }
 
 impl Checked {
@@ -119,15 +61,7 @@ impl Checked {
     /// As [`Checked::identify`].
     pub fn identify_observed(mut self, observe: &(dyn Fn() + Sync)) -> Result<Identified, IdentifyError> {
         let validation = self.gates.split_off(self.n_estimation);
-        let from_noise = thresholds(&self.gates, &self.muscle.muscle);
-        let thresholds = Thresholds {
-            held_m: 0.0,
-            turn_m: 0.0,
-            standstill: from_noise.standstill,
-            length_m: self.length_play_m.unwrap_or(from_noise.length_m),
-            pressure_pa: self.pressure_play_pa.unwrap_or(from_noise.pressure_pa),
-        };
-        let finest_m = self.length_play_m.unwrap_or_else(|| finest_length_play_m(&self.gates, &self.muscle.muscle));
+        let (thresholds, finest_m) = self.thresholds();
         let largest_n_per_m =
             self.gates.iter().map(|gate| gate.quality.largest_pressure_length_n_per_m).fold(0.0, f64::max);
         let force_noise_n = self.force_noise_n();
@@ -200,6 +134,22 @@ impl Checked {
         Ok(identified)
     }
 
+    /// Thresholds of the direction, as given or from the noise of the estimation recordings, and the play of the length that their
+    /// white noise alone allows, in m.
+    pub(crate) fn thresholds(&self) -> (Thresholds, f64) {
+        let gates = &self.gates[..self.gates.len().min(self.n_estimation)];
+        let from_noise = thresholds(gates, &self.muscle.muscle);
+        let thresholds = Thresholds {
+            held_m: 0.0,
+            turn_m: 0.0,
+            standstill: from_noise.standstill,
+            length_m: self.length_play_m.unwrap_or(from_noise.length_m),
+            pressure_pa: self.pressure_play_pa.unwrap_or(from_noise.pressure_pa),
+        };
+        let finest_m = self.length_play_m.unwrap_or_else(|| finest_length_play_m(gates, &self.muscle.muscle));
+        (thresholds, finest_m)
+    }
+
     /// Laws of friction at standstill, the one to be taken first; only one where it is assumed or makes no difference.
     fn judge_standstill(
         &self,
@@ -217,7 +167,7 @@ impl Checked {
     }
 
     /// White noise of the force over all estimation recordings.
-    fn force_noise_n(&self) -> f64 {
+    pub(crate) fn force_noise_n(&self) -> f64 {
         let (mut squares, mut rows) = (0.0, 0.0);
         for gate in &self.gates {
             if let Some(force) = gate.quality.channel("force") {
@@ -229,13 +179,18 @@ impl Checked {
         (squares / f64::max(rows, 1.0)).sqrt()
     }
 
-    fn model(&self, muscle: &Muscle, parameters: BaseParameters) -> ForceModel {
+    pub(crate) fn model(&self, muscle: &Muscle, parameters: BaseParameters) -> ForceModel {
         ForceModel::new(muscle, self.muscle.strand_modulus_pa, self.form, parameters)
     }
 
     /// What is moved, and what the recordings cannot identify. Twins whose shares the recordings do not tell are moved
     /// together: `C₁₀` and `C₀₁` as their sum, both frictions as that of the bladder.
-    fn search_space(&self, columns: &ForceColumns, condensed: &Condensed, noise_n: f64) -> (SearchSpace, Vec<Free>) {
+    pub(crate) fn search_space(
+        &self,
+        columns: &ForceColumns,
+        condensed: &Condensed,
+        noise_n: f64,
+    ) -> (SearchSpace, Vec<Free>) {
         let fixed = [Parameter::C10, Parameter::C01].into_iter().any(|parameter| self.fixes(parameter));
         let judged = self.form == Form::Corrected;
         let mut bladder = match self.assumed.bladder {
@@ -409,16 +364,6 @@ impl Checked {
             accept_implausible: self.accept_implausible,
         }
     }
-}
-
-/// Refuses fewer samples than twice the columns.
-fn enough(path: &str, n_samples: usize) -> Result<(), IdentifyError> {
-    let needed = 2 * N_COLUMNS;
-    if n_samples < needed {
-        let (path, n_parameters) = (path.to_owned(), Parameter::ALL.len());
-        return Err(IdentifyError::TooFewSamples { path, n_samples, n_parameters, needed });
-    }
-    Ok(())
 }
 
 /// Where the search and what follows it ended.

@@ -5,9 +5,10 @@
 //! [`search_space`] says what is fitted within which range, [`problem`] is the cost over that space,
 //! [`fit`] searches it, [`uncertainty`] says how well the result is known, [`evaluate`] compares it with
 //! recordings, [`prediction`] row by row with the interval of [`band`]; [`geometry`] and [`robust`] are the slower ways with freed dimensions and robust weights;
-//! [`identify`] is all of it in order.
+//! [`identify`] is all of it in order, and [`shards`] the same over rows in several places.
 
 pub mod band;
+mod check;
 pub mod condense;
 pub mod error;
 pub mod evaluate;
@@ -25,7 +26,9 @@ pub mod report;
 pub mod request;
 pub mod robust;
 pub mod search_space;
+pub mod shards;
 pub mod standstill;
+mod tally;
 #[cfg(test)]
 mod testing;
 pub mod trace;

@@ -4,7 +4,9 @@
 //! that leaves least of the force, with weights free of bounds so that no start of a search matters, is taken; samples
 //! before the first motion, whose friction nobody knows, count without friction under every law.
 
+use std::cell::OnceCell;
 use std::io;
+use std::ops::Range;
 
 use pam_core::artifact::model::StandstillFit;
 use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
@@ -64,13 +66,17 @@ pub fn judge(
     columns: &ForceColumns,
     thresholds: Thresholds,
 ) -> Result<Vec<StandstillFit>, IdentifyError> {
-    let laws: Vec<Standstill> = OVER_PA
-        .map(|over_pa| Standstill::Slides { over_pa, share: 1.0 })
-        .into_iter()
-        .chain([Standstill::Held])
-        .collect();
-    let stride = stride(recordings);
-    let fitted = |laws: Vec<Standstill>, late: Option<&[Vec<f64>]>| -> Result<Vec<StandstillFit>, IdentifyError> {
+    let stride = stride(recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum());
+    let late = OnceCell::new();
+    judge_by(&|laws: Vec<Standstill>, is_late: bool| {
+        let late: Option<&Vec<Vec<f64>>> = if is_late {
+            let changes: Result<Vec<Vec<f64>>, IdentifyError> =
+                recordings.iter().map(|prepared| changes_pa(prepared)).collect();
+            let changes = changes?;
+            Some(late.get_or_init(|| changes))
+        } else {
+            None
+        };
         let fitted = laws.into_par_iter().map(|standstill| {
             let thresholds = Thresholds { standstill, ..thresholds };
             let found: Result<Vec<Direction>, IdentifyError> = recordings
@@ -82,12 +88,37 @@ pub fn judge(
                 .collect();
             let found = found?;
             let directions: Vec<&Direction> = found.iter().collect();
-            let left = mean_square(recordings, columns, &directions, Counts::Settled(stride), late)?;
+            let left = mean_square(recordings, columns, &directions, Counts::Settled(stride), late.map(Vec::as_slice))?;
             Ok(StandstillFit { standstill, rmse_n: left.sqrt() })
         });
         fitted.collect()
-    };
-    let mut judged = fitted(laws.clone(), None)?;
+    })
+}
+
+/// The laws that are compared first: those under which the pressure turns over all of the friction, or none.
+pub fn laws() -> Vec<Standstill> {
+    let slides = OVER_PA.map(|over_pa| Standstill::Slides { over_pa, share: 1.0 });
+    slides.into_iter().chain([Standstill::Held]).collect()
+}
+
+/// Laws under which the pressure turns over a share of the friction: the few that are looked at first.
+pub fn few_laws() -> Vec<Standstill> {
+    partly(&FEW_PA, &FEW)
+}
+
+fn partly(over_pa: &[f64], shares: &[f64]) -> Vec<Standstill> {
+    let law = |&over_pa: &f64| shares.iter().map(move |&share| Standstill::Slides { over_pa, share });
+    over_pa.iter().flat_map(law).collect()
+}
+
+/// Every law with what it leaves, the one to be taken first; `fitted` gives what laws leave, beside a late pressure if so asked.
+///
+/// # Errors
+/// Those of `fitted`.
+pub fn judge_by<E>(
+    fitted: &dyn Fn(Vec<Standstill>, bool) -> Result<Vec<StandstillFit>, E>,
+) -> Result<Vec<StandstillFit>, E> {
+    let mut judged = fitted(laws(), false)?;
     let most_n = judged[0].rmse_n * (1.0 - CLEARLY).sqrt();
     // As good is not better: what follows the pressure stays first where nothing clearly beats it.
     judged.sort_by(|left, right| {
@@ -96,20 +127,14 @@ pub fn judge(
         };
         rank(left).total_cmp(&rank(right))
     });
-    let partly = |over_pa: &[f64], shares: &[f64]| -> Result<Option<StandstillFit>, IdentifyError> {
-        let law = |&over_pa: &f64| shares.iter().map(move |&share| Standstill::Slides { over_pa, share });
-        Ok(least(fitted(over_pa.iter().flat_map(law).collect(), None)?))
-    };
     let most = (1.0 - PARTLY).sqrt();
     // Where no few of them gain anything near it, none of the others is looked at.
-    let promises = partly(&FEW_PA, &FEW)?.is_some_and(|law| law.rmse_n < (1.0 - CLEARLY).sqrt() * judged[0].rmse_n);
-    let best = if promises { partly(&OVER_PA[1..], &SHARES)? } else { None };
+    let promises =
+        least(fitted(few_laws(), false)?).is_some_and(|law| law.rmse_n < (1.0 - CLEARLY).sqrt() * judged[0].rmse_n);
+    let best = if promises { least(fitted(partly(&OVER_PA[1..], &SHARES), false)?) } else { None };
     if let Some(best) = best.filter(|best| best.rmse_n < most * judged[0].rmse_n) {
-        let late: Result<Vec<Vec<f64>>, IdentifyError> =
-            recordings.iter().map(|prepared| changes_pa(prepared)).collect();
-        let late = late?;
-        let wholly = least(fitted(laws, Some(&late))?);
-        let partly = least(fitted(vec![best.standstill], Some(&late))?);
+        let wholly = least(fitted(laws(), true)?);
+        let partly = least(fitted(vec![best.standstill], true)?);
         if partly.zip(wholly).is_some_and(|(partly, wholly)| partly.rmse_n < most * wholly.rmse_n) {
             judged.insert(0, best);
         }
@@ -122,7 +147,7 @@ fn least(laws: Vec<StandstillFit>) -> Option<StandstillFit> {
 }
 
 /// What the pressure changes by within [`LATE_S`] around every row, in Pa.
-fn changes_pa(prepared: &Prepared) -> Result<Vec<f64>, IdentifyError> {
+pub(crate) fn changes_pa(prepared: &Prepared) -> Result<Vec<f64>, IdentifyError> {
     let samples = &prepared.recording.samples;
     let n_rows = samples.n_rows();
     let mut pressure_pa = Vec::with_capacity(n_rows);
@@ -156,11 +181,10 @@ pub fn turning(
     thresholds: Thresholds,
     finest_m: f64,
 ) -> Result<Thresholds, IdentifyError> {
-    let first = TURNING_ROWS / recordings.len().max(1);
-    let finest = (finest_m < FINER * thresholds.length_m).then_some(finest_m);
-    let travels: Vec<(f64, f64)> = HELD_M.iter().flat_map(|&held_m| TURNS_M.map(|turn_m| (held_m, turn_m))).collect();
+    let first = turning_rows(recordings.len());
+    let travels = travels();
     let mut judged = Vec::new();
-    for length_m in std::iter::once(thresholds.length_m).chain(finest) {
+    for length_m in turning_plays_m(thresholds, finest_m) {
         let thresholds = Thresholds { length_m, ..thresholds };
         let counts = Counts::First(first);
         let found: Result<Vec<Vec<Direction>>, IdentifyError> = recordings
@@ -172,31 +196,55 @@ pub fn turning(
             })
             .collect();
         let found = found?;
-        let left: Result<Vec<(f64, Thresholds)>, IdentifyError> = travels
-            .par_iter()
-            .enumerate()
-            .map(|(index, &(held_m, turn_m))| {
+        let left: Result<Vec<f64>, IdentifyError> = (0..travels.len())
+            .into_par_iter()
+            .map(|index| {
                 let directions: Vec<&Direction> = found.iter().map(|directions| &directions[index]).collect();
-                let left = mean_square(recordings, columns, &directions, counts, None)?;
-                Ok((left, Thresholds { held_m, turn_m, ..thresholds }))
+                mean_square(recordings, columns, &directions, counts, None)
             })
             .collect();
         judged.extend(left?);
     }
-    let most = (1.0 - HARDLY) * judged[0].0;
-    let best = judged.into_iter().filter(|(left, _)| *left < most).min_by(|one, other| one.0.total_cmp(&other.0));
-    Ok(best.map_or(thresholds, |(_, travels)| travels))
+    Ok(turning_of(&judged, thresholds, finest_m))
 }
 
-/// Every how many rows are looked at.
-fn stride(recordings: &[&Prepared]) -> usize {
-    let n_rows: usize = recordings.iter().map(|prepared| prepared.recording.samples.n_rows()).sum();
+/// Travels that are compared (`held_m`, `turn_m`), none first.
+pub fn travels() -> Vec<(f64, f64)> {
+    HELD_M.iter().flat_map(|&held_m| TURNS_M.map(|turn_m| (held_m, turn_m))).collect()
+}
+
+/// Rows of each of `n_recordings` that travels are compared on, its first ones.
+pub fn turning_rows(n_recordings: usize) -> usize {
+    TURNING_ROWS / n_recordings.max(1)
+}
+
+/// Plays of the length under which travels are compared, in m.
+pub fn turning_plays_m(thresholds: Thresholds, finest_m: f64) -> Vec<f64> {
+    let finest = (finest_m < FINER * thresholds.length_m).then_some(finest_m);
+    std::iter::once(thresholds.length_m).chain(finest).collect()
+}
+
+/// `thresholds` with the play and the travels that leave least, of the mean squares `left` for every one of the
+/// [plays](turning_plays_m) and, within it, of the [`travels`].
+pub fn turning_of(left: &[f64], thresholds: Thresholds, finest_m: f64) -> Thresholds {
+    let travels = travels();
+    let tried = turning_plays_m(thresholds, finest_m).into_iter().flat_map(|length_m| {
+        travels.iter().map(move |&(held_m, turn_m)| Thresholds { length_m, held_m, turn_m, ..thresholds })
+    });
+    let judged: Vec<(f64, Thresholds)> = left.iter().copied().zip(tried).collect();
+    let most = (1.0 - HARDLY) * judged[0].0;
+    let best = judged.into_iter().filter(|(left, _)| *left < most).min_by(|one, other| one.0.total_cmp(&other.0));
+    best.map_or(thresholds, |(_, travels)| travels)
+}
+
+/// Every how many of `n_rows` are looked at.
+pub fn stride(n_rows: usize) -> usize {
     n_rows.div_ceil(MOST_ROWS).max(1)
 }
 
 /// Which rows a law is judged by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Counts {
+pub(crate) enum Counts {
     /// Every so many of those whose direction is settled, and of those before the first motion.
     Settled(usize),
     /// So many, but for what was left out of every fit: how friction turns over shows around reversals alone.
@@ -230,22 +278,27 @@ fn mean_square(
     let mut total = Summary::new(N_COLUMNS + usize::from(late.is_some()));
     for (index, (prepared, direction)) in recordings.iter().zip(directions).enumerate() {
         let change_pa = late.map(|late| late[index].as_slice());
-        let part = condensed(prepared, columns, direction, counts, change_pa)
+        let part = condensed(prepared, 0..counts.rows(prepared), columns, direction, counts, change_pa)
             .map_err(|reason| unreadable(prepared, reason))?;
         total.merge(&part);
     }
     Ok(total.residual_floor_square_sum() / total.n_rows().max(1) as f64)
 }
 
-fn condensed(
+/// The columns of `rows` of a recording with a `direction` of its own, beside the force.
+///
+/// # Errors
+/// Where samples cannot be read back.
+pub(crate) fn condensed(
     prepared: &Prepared,
+    rows: Range<usize>,
     columns: &ForceColumns,
     direction: &Direction,
     counts: Counts,
     change_pa: Option<&[f64]>,
 ) -> io::Result<Summary> {
     debug_assert_eq!(columns.form(), Form::Corrected);
-    let n_rows = counts.rows(prepared);
+    let n_rows = rows.end;
     let stride = match counts {
         Counts::Settled(stride) => stride,
         Counts::First(_) => 1,
@@ -262,7 +315,7 @@ fn condensed(
     let mut block = vec![0.0; BLOCK_ROWS * width];
     let mut filled = 0;
     let samples = &prepared.recording.samples;
-    let mut row = 0;
+    let mut row = rows.start;
     while row < n_rows {
         let chunk = samples.chunk(row / CHUNK_ROWS)?;
         while row < n_rows.min(chunk.first_row() + chunk.n_rows()) {

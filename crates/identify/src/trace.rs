@@ -1,5 +1,7 @@
 //! Samples beside a model, for figures and for what looks at a residual.
 
+use std::ops::Range;
+
 use pam_core::direction::Thresholds;
 use pam_core::effects::AugmentedModel;
 use pam_core::force::ForceModel;
@@ -36,24 +38,34 @@ pub struct Trace {
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
 pub fn trace(prepared: &Prepared, model: &ForceModel) -> Result<Trace, IdentifyError> {
-    every(prepared, model, trace_stride(prepared))
+    every(prepared, model, trace_stride(prepared), 0..prepared.recording.samples.n_rows())
 }
 
 /// Rows from one sample of a trace to the next.
 pub(crate) fn trace_stride(prepared: &Prepared) -> usize {
-    prepared.recording.samples.n_rows().div_ceil(TRACE_SAMPLES).max(1)
+    stride_of(prepared.recording.samples.n_rows())
 }
 
-/// Every `stride`-th sample of `prepared` beside what `model` says.
-pub(crate) fn every(prepared: &Prepared, model: &ForceModel, stride: usize) -> Result<Trace, IdentifyError> {
+/// The same for a recording of so many rows.
+pub(crate) fn stride_of(n_rows: usize) -> usize {
+    n_rows.div_ceil(TRACE_SAMPLES).max(1)
+}
+
+/// Every `stride`-th of the samples in `rows` of `prepared` beside what `model` says, the first of `rows` being one.
+pub(crate) fn every(
+    prepared: &Prepared,
+    model: &ForceModel,
+    stride: usize,
+    rows: Range<usize>,
+) -> Result<Trace, IdentifyError> {
     let samples = &prepared.recording.samples;
     let mut trace = Trace::default();
-    let mut row = 0;
-    while row < samples.n_rows() {
+    let mut row = rows.start;
+    while row < rows.end {
         let chunk = samples
             .chunk(row / CHUNK_ROWS)
             .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
-        while row < chunk.first_row() + chunk.n_rows() {
+        while row < rows.end.min(chunk.first_row() + chunk.n_rows()) {
             let here = row - chunk.first_row();
             let (pressure_pa, length_m) = (chunk.pressure_pa()[here], chunk.length_m()[here]);
             let direction = prepared.direction.sign(row);

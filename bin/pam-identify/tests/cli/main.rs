@@ -7,3 +7,4 @@ mod fits;
 mod instruments;
 mod mistakes;
 mod outputs;
+mod shards;

@@ -3,6 +3,7 @@
 //! Every artifact begins with `schema`, `tool`, `inputs`, `config` and `seed`. Equal inputs give equal bytes on
 //! any thread count; time stamps stay out.
 
+pub mod agreement;
 pub mod change;
 pub mod comparison;
 pub mod diagnosis;
@@ -15,7 +16,9 @@ mod identify_config;
 pub mod inverse;
 pub mod model;
 pub mod prediction;
+pub mod summary;
 
+pub use agreement::AgreementArtifact;
 pub use change::ChangeArtifact;
 pub use comparison::ComparisonArtifact;
 pub use diagnosis::DiagnosisArtifact;
@@ -24,6 +27,7 @@ pub use group::GroupArtifact;
 pub use inverse::InverseArtifact;
 pub use model::ModelArtifact;
 pub use prediction::PredictionArtifact;
+pub use summary::SummaryArtifact;
 
 use std::path::{Path, PathBuf};
 
@@ -157,6 +161,17 @@ pub fn readable_json<T: Serialize + DeserializeOwned>(artifact: &T) -> Result<Ve
             None => format!("{line}: {}", without_position(&error.to_string())),
         }));
     }
+    Ok(bytes)
+}
+
+/// An artifact of many numbers on one line, with a line break at its end.
+///
+/// # Errors
+/// [`ArtifactError::Unreadable`] where it is no JSON.
+pub(crate) fn line_json(artifact: &impl Serialize) -> Result<Vec<u8>, ArtifactError> {
+    let mut bytes =
+        serde_json::to_vec(artifact).map_err(|error| ArtifactError::Unreadable { what: error.to_string() })?;
+    bytes.push(b'\n');
     Ok(bytes)
 }
 

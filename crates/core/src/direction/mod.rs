@@ -31,17 +31,20 @@ use serde::{Deserialize, Serialize};
 
 use crate::recording::{CHUNK_ROWS, Chunk, Recording};
 
+mod carried;
 mod rest;
 mod states;
 mod turn;
 
 use states::{Bounds, State, Unturned, moving_average, slide};
 
+pub use carried::{Carried, Piece};
 pub use rest::STANDSTILL_S;
 pub use states::WINDOW_S;
 
-/// Rows that are worked on at a time; memory across a border between two is a state and an extreme.
-const STRETCH_ROWS: usize = 1 << 18;
+/// Rows that are worked on at a time, from the beginning of a segment on; across a border between two nothing is remembered but a
+/// state.
+pub const STRETCH_ROWS: usize = 1 << 18;
 
 /// What friction does while the length stands still.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -167,6 +170,30 @@ impl Direction {
         driver: Driver,
         travels: &[(f64, f64)],
     ) -> io::Result<Vec<Self>> {
+        let pieces = recording.segments.iter().map(|segment| Piece {
+            rows: segment.start.min(n_rows)..segment.end.min(n_rows),
+            carried: Carried::UNKNOWN,
+        });
+        let all = Self::of_pieces(n_rows, recording, &pieces.collect::<Vec<_>>(), thresholds, driver, travels)?;
+        // What nothing moves from beginning to end counts without friction, or nothing would.
+        let counted = |(direction, _): (Self, Carried)| if direction.knows() { direction } else { direction.at_rest() };
+        Ok(all.into_iter().map(counted).collect())
+    }
+
+    /// Directions of `pieces` of the first `n_rows` of `recording`, ascending, with what each of the `travels` carries on from the
+    /// last of them. Rows beside them are unsettled. A piece that goes on in a segment begins a multiple of [`STRETCH_ROWS`] after
+    /// it began, and ends there or with it: then its states are, to the bit, those that the whole segment has there.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of_pieces(
+        n_rows: usize,
+        recording: &Recording,
+        pieces: &[Piece],
+        thresholds: Thresholds,
+        driver: Driver,
+        travels: &[(f64, f64)],
+    ) -> io::Result<Vec<(Self, Carried)>> {
         let turns = travels.iter().any(|(held_m, turn_m)| *held_m > 0.0 || *turn_m > 0.0);
         let empty = || Self {
             states: Vec::with_capacity(n_rows),
@@ -174,35 +201,59 @@ impl Direction {
             known: Vec::with_capacity(n_rows),
             left_out: Vec::new(),
         };
-        let mut all: Vec<Self> = travels.iter().map(|_| empty()).collect();
-        for segment in &recording.segments {
-            let segment = segment.start.min(n_rows)..segment.end.min(n_rows);
-            let mut carried = vec![Bounds::UNKNOWN; travels.len()];
-            for start in segment.clone().step_by(STRETCH_ROWS) {
-                let end = (start + STRETCH_ROWS).min(segment.end);
+        let mut all: Vec<(Self, Carried)> = travels.iter().map(|_| (empty(), Carried::UNKNOWN)).collect();
+        for Piece { rows: piece, carried } in pieces {
+            for (direction, ends) in &mut all {
+                direction.skip_to(piece.start);
+                *ends = *carried;
+            }
+            for start in piece.clone().step_by(STRETCH_ROWS) {
+                let end = (start + STRETCH_ROWS).min(piece.end);
                 let (time_s, pressure_pa, length_m) = rows(recording, &(start..end))?;
                 let unturned =
                     |before| Unturned::of(&time_s, &pressure_pa, &length_m, thresholds, driver, before, turns);
                 // What came before this stretch may have turned over within one travel and not within another.
                 let mut begun: Option<(Bounds, Unturned)> = None;
-                for ((direction, before), &(held_m, turn_m)) in all.iter_mut().zip(&mut carried).zip(travels) {
+                for ((direction, before), &(held_m, turn_m)) in all.iter_mut().zip(travels) {
                     let found = match begun.take() {
-                        Some((bounds, found)) if bounds == *before => found,
-                        _ => unturned(*before),
+                        Some((bounds, found)) if bounds == before.bounds() => found,
+                        _ => unturned(before.bounds()),
                     };
                     let stretch = found.turned(Thresholds { held_m, turn_m, ..thresholds });
-                    begun = Some((*before, found));
-                    *before = stretch.last().map_or(*before, |state| state.bounds);
+                    begun = Some((before.bounds(), found));
+                    *before = stretch.last().map_or(*before, |state| Carried::of(state.bounds));
                     direction.extend(&stretch);
                 }
             }
         }
-        // What nothing moves from beginning to end counts without friction, or nothing would.
-        for direction in all.iter_mut().filter(|direction| !direction.known.contains(&true)) {
-            direction.known.fill(true);
-            direction.settled.fill(true);
-        }
+        all.iter_mut().for_each(|(direction, _)| direction.skip_to(n_rows));
         Ok(all)
+    }
+
+    /// Of `n_rows` rows of which nothing is known.
+    pub fn nothing(n_rows: usize) -> Self {
+        let (states, settled) = (vec![0; n_rows], vec![false; n_rows]);
+        Self { states, known: settled.clone(), settled, left_out: Vec::new() }
+    }
+
+    /// Leaves rows up to `row` unsettled and unknown.
+    fn skip_to(&mut self, row: usize) {
+        self.states.resize(row, 0);
+        self.settled.resize(row, false);
+        self.known.resize(row, false);
+    }
+
+    /// Whether anything moves.
+    pub fn knows(&self) -> bool {
+        self.known.contains(&true)
+    }
+
+    /// The same where nothing moves in the whole recording: every sample counts, without friction.
+    #[must_use]
+    pub fn at_rest(mut self) -> Self {
+        self.known.fill(true);
+        self.settled.fill(true);
+        self
     }
 
     fn extend(&mut self, stretch: &[State]) {

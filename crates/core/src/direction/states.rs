@@ -19,12 +19,21 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
+    #[cfg(test)]
     pub(super) const UNKNOWN: Self = Self { low: -1.0, high: 1.0 };
     /// Bounds that are closer than this are a state.
     const CLOSE: f64 = 0.2;
 
     pub(super) fn at(state: f64) -> Self {
         Self { low: state, high: state }
+    }
+
+    pub(super) fn between(low: f64, high: f64) -> Self {
+        Self { low, high }
+    }
+
+    pub(super) fn ends(self) -> (f64, f64) {
+        (self.low, self.high)
     }
 
     pub(super) fn middle(self) -> f64 {

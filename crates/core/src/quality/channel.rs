@@ -59,8 +59,6 @@ impl ChannelQuality {
 /// Standard deviations of its noise by which a channel must turn back before it counts as turned.
 pub const PLAY: f64 = 5.0;
 
-/// Length of a run of equal values that counts as stuck.
-const STUCK_RUN: usize = 10;
 /// Values that the estimates of noise and quantization look at.
 pub(super) const SAMPLE_ROWS: usize = 1 << 16;
 
@@ -308,52 +306,6 @@ pub fn quantization_step(values: &[f64]) -> Option<f64> {
     let few_values = span / step < 70_000.0;
     let explained = few_values && multiples.count() as f64 > 0.98 * gaps.len() as f64;
     explained.then_some(step).or_else(|| super::printed_step::behind_digits(&sorted))
-}
-
-/// Counts samples stuck at the ends of a channel, over consecutive values.
-#[derive(Debug)]
-pub(super) struct StuckCounter {
-    lowest: f64,
-    highest: f64,
-    run_value: f64,
-    run: usize,
-    low: usize,
-    high: usize,
-    total: usize,
-}
-
-impl StuckCounter {
-    pub(super) fn new(lowest: f64, highest: f64) -> Self {
-        Self { lowest, highest, run_value: f64::NAN, run: 0, low: 0, high: 0, total: 0 }
-    }
-
-    pub(super) fn push(&mut self, value: f64) {
-        self.total += 1;
-        if value == self.run_value {
-            self.run += 1;
-        } else {
-            self.close();
-            self.run_value = value;
-            self.run = 1;
-        }
-    }
-
-    fn close(&mut self) {
-        if self.run >= STUCK_RUN {
-            if self.run_value == self.lowest {
-                self.low += self.run;
-            } else if self.run_value == self.highest {
-                self.high += self.run;
-            }
-        }
-    }
-
-    /// Shares stuck at the lowest and at the highest value.
-    pub(super) fn shares(mut self) -> (f64, f64) {
-        self.close();
-        let total = self.total.max(1) as f64;
-        (self.low as f64 / total, self.high as f64 / total)
-    }
 }
 
 #[cfg(test)]

@@ -60,6 +60,19 @@ impl SensorEnds {
     /// # Errors
     /// Where the samples cannot be read back.
     pub fn reached(&self, recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<Range<usize>>> {
+        self.reached_from(0, recording, quality)
+    }
+
+    /// The same where `recording` holds rows from `first_row` on of the one that `quality` is of; rows are counted in that one.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn reached_from(
+        &self,
+        first_row: usize,
+        recording: &Recording,
+        quality: &RecordingQuality,
+    ) -> io::Result<Vec<Range<usize>>> {
         let has =
             |ends: &[(String, f64)], name: &str, value: f64| ends.iter().any(|end| end.0 == name && end.1 == value);
         let columns: [(Quantity, Column); 2] =
@@ -95,6 +108,7 @@ impl SensorEnds {
                 if columns.iter().all(|(low, high, column)| column[here] > *low && column[here] < *high) {
                     continue;
                 }
+                let row = first_row + row;
                 let around = row.saturating_sub(guard)..(row + guard + 1).min(quality.n_rows);
                 match found.last_mut() {
                     Some(last) if last.end >= around.start => last.end = around.end,

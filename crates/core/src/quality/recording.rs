@@ -6,9 +6,9 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::channel::{
-    ChannelQuality, SAMPLE_ROWS, StuckCounter, colored_noise_std, noise_std, quantization_step, rest_noise_std,
-};
+use super::channel::{ChannelQuality, quantization_step, rest_noise_std};
+use super::parts::{Extent, Sample};
+use super::stuck::StuckRuns;
 use crate::recording::{Chunk, Recording, Repairs};
 
 /// What a recording looks like before anything is fitted to it; SI throughout.
@@ -41,43 +41,47 @@ impl RecordingQuality {
     /// # Errors
     /// Where the samples cannot be read back.
     pub fn of(recording: &Recording) -> io::Result<Self> {
-        let columns: &[Column] = if recording.samples.has_force() {
-            &[Chunk::pressure_pa, Chunk::length_m, Chunk::force_n]
-        } else {
-            &[Chunk::pressure_pa, Chunk::length_m]
-        };
-        let mut extremes = vec![(f64::INFINITY, f64::NEG_INFINITY); columns.len()];
-        let mut largest = 0.0_f64;
-        for chunk in recording.samples.chunks() {
-            let chunk = chunk?;
-            for ((low, high), column) in extremes.iter_mut().zip(columns) {
-                for &value in column(&chunk) {
-                    *low = low.min(value);
-                    *high = high.max(value);
-                }
-            }
-            for (pressure_pa, length_m) in chunk.pressure_pa().iter().zip(chunk.length_m()) {
-                largest = largest.max(pressure_pa * length_m);
+        let extent = Extent::of(recording)?;
+        let sample = Sample::of(recording)?;
+        let mut quality = Self::of_parts(recording, &extent, &sample);
+        let stuck: io::Result<Vec<Option<(f64, f64)>>> =
+            quality.channels.par_iter().map(|channel| stuck_shares(recording, channel, &sample)).collect();
+        for (channel, shares) in quality.channels.iter_mut().zip(stuck?) {
+            if let Some((low, high)) = shares {
+                (channel.clipped_low_share, channel.clipped_high_share) = (low, high);
             }
         }
-        let sample = Sample::of(recording)?;
-        let channels: io::Result<Vec<ChannelQuality>> = columns
-            .par_iter()
-            .enumerate()
-            .map(|(index, column)| channel(recording, index, *column, extremes[index], &sample))
-            .collect();
-        let channels = channels?;
-        let noise = |index: usize| channels[index].noise;
-        Ok(Self {
+        let rates = quality.fastest(recording)?;
+        (quality.length_rate_m_per_s, quality.pressure_rate_pa_per_s) = (rates.length_m_per_s, rates.pressure_pa_per_s);
+        Ok(quality)
+    }
+
+    /// What `extent` and `sample` of a recording say: all but stuck samples and rates, which are zero.
+    pub(super) fn of_parts(recording: &Recording, extent: &Extent, sample: &Sample) -> Self {
+        let names = if recording.samples.has_force() { &NAMES[..] } else { &NAMES[..2] };
+        let channels = names.par_iter().enumerate().map(|(index, _)| channel(index, extent, sample)).collect();
+        Self {
             path: recording.path.clone(),
-            n_rows: recording.samples.n_rows(),
-            duration_s: sample.duration_s,
+            n_rows: extent.n_rows,
+            duration_s: extent.last_s - sample.first_s,
             period_s: sample.period_s,
             repairs: recording.repairs.clone(),
-            length_rate_m_per_s: fastest(recording, Chunk::length_m, noise(1), sample.period_s)?,
-            pressure_rate_pa_per_s: fastest(recording, Chunk::pressure_pa, noise(0), sample.period_s)?,
-            largest_pressure_length_n_per_m: largest,
             channels,
+            length_rate_m_per_s: 0.0,
+            pressure_rate_pa_per_s: 0.0,
+            largest_pressure_length_n_per_m: extent.largest_pressure_length_n_per_m,
+        }
+    }
+
+    /// Fastest changes within the chunks of `recording`, with the noise and the clock that are here.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn fastest(&self, recording: &Recording) -> io::Result<Rates> {
+        let noise = |name: &str| self.channel(name).map_or(0.0, |channel| channel.noise);
+        Ok(Rates {
+            length_m_per_s: fastest(recording, Chunk::length_m, noise("length"), self.period_s)?,
+            pressure_pa_per_s: fastest(recording, Chunk::pressure_pa, noise("pressure"), self.period_s)?,
         })
     }
 
@@ -87,57 +91,29 @@ impl RecordingQuality {
     }
 }
 
-type Column = fn(&Chunk) -> &[f64];
+pub(super) type Column = fn(&Chunk) -> &[f64];
 
-/// Chunks that noise and quantization are estimated on: the first rows, and the clock over all of them.
-struct Sample {
-    chunks: Vec<Chunk>,
-    duration_s: f64,
-    period_s: f64,
-}
-
-impl Sample {
-    fn of(recording: &Recording) -> io::Result<Self> {
-        let samples = &recording.samples;
-        let mut chunks = Vec::new();
-        // Spread over the recording, so that a long hold at its start does not stand for all of it.
-        let wanted = (SAMPLE_ROWS / crate::recording::CHUNK_ROWS).max(1);
-        let stride = samples.n_chunks().div_ceil(wanted).max(1);
-        for index in (0..samples.n_chunks()).step_by(stride) {
-            chunks.push(samples.chunk(index)?);
-        }
-        let mut steps_s: Vec<f64> =
-            chunks.iter().flat_map(|chunk| chunk.time_s().windows(2).map(|pair| pair[1] - pair[0])).collect();
-        let middle = steps_s.len() / 2;
-        let period_s = if steps_s.is_empty() { 0.0 } else { *steps_s.select_nth_unstable_by(middle, f64::total_cmp).1 };
-        let first_s = chunks.first().and_then(|chunk| chunk.time_s().first().copied()).unwrap_or(0.0);
-        let last = samples.n_chunks().checked_sub(1).map(|index| samples.chunk(index)).transpose()?;
-        let last_s = last.and_then(|chunk| chunk.time_s().last().copied()).unwrap_or(first_s);
-        Ok(Self { chunks, duration_s: last_s - first_s, period_s })
-    }
-}
-
+/// The columns in the order of [`NAMES`].
+pub(super) const COLUMNS: [Column; 3] = [Chunk::pressure_pa, Chunk::length_m, Chunk::force_n];
 const NAMES: [(&str, &str); 3] = [("pressure", "Pa"), ("length", "m"), ("force", "N")];
 
-fn channel(
-    recording: &Recording,
-    index: usize,
-    column: Column,
-    (lowest, highest): (f64, f64),
-    sample: &Sample,
-) -> io::Result<ChannelQuality> {
+/// Fastest changes over 50 ms.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rates {
+    /// Of the length, in m/s.
+    pub length_m_per_s: f64,
+    /// Of the pressure, in Pa/s.
+    pub pressure_pa_per_s: f64,
+}
+
+/// What the channel `index` looks like; nothing is said of stuck samples.
+fn channel(index: usize, extent: &Extent, sample: &Sample) -> ChannelQuality {
+    let column = COLUMNS[index];
     // A chunk at rest shows no step.
     let moves = |chunk: &&Chunk| column(chunk).iter().any(|&value| value != column(chunk)[0]);
     let step = sample.chunks.iter().find(moves).and_then(|chunk| quantization_step(column(chunk)));
-    let (mut squares, mut colored_squares, mut rows) = (0.0, 0.0, 0.0);
-    for chunk in &sample.chunks {
-        let noise = noise_std(column(chunk));
-        let colored = colored_noise_std(column(chunk), sample.period_s).unwrap_or(noise);
-        squares += noise * noise * chunk.n_rows() as f64;
-        colored_squares += colored * colored * chunk.n_rows() as f64;
-        rows += chunk.n_rows() as f64;
-    }
-    let [flicker, colored] = [squares, colored_squares].map(|squares| (squares / f64::max(rows, 1.0)).sqrt());
+    let [flicker, colored] = sample.flicker(column);
     // A channel at rest between two steps shows no noise at all, and yet is known to a step only.
     let [noise, colored_noise] =
         [flicker, colored].map(|noise| step.map_or(noise, |step| noise.max(step / 12.0_f64.sqrt())));
@@ -147,28 +123,32 @@ fn channel(
         .filter_map(|chunk| rest_noise_std(column(chunk), sample.period_s, noise.max(colored_noise)))
         .collect();
     let rest_noise = rests.iter().copied().reduce(f64::min).unwrap_or(0.0);
-    let mut shares = (0.0, 0.0);
-    // Only a channel that flickers between its steps can be told to be stuck.
-    if highest > lowest && step.is_none_or(|step| flicker > 0.5 * step) {
-        let mut counter = StuckCounter::new(lowest, highest);
-        for chunk in recording.samples.chunks() {
-            column(&chunk?).iter().for_each(|&value| counter.push(value));
-        }
-        shares = counter.shares();
-    }
     let (name, unit) = NAMES[index];
-    Ok(ChannelQuality {
+    ChannelQuality {
         name: name.to_owned(),
         unit: unit.to_owned(),
-        lowest,
-        highest,
+        lowest: extent.lowest[index],
+        highest: extent.highest[index],
         noise,
         colored_noise,
         rest_noise,
         quantization_step: step,
-        clipped_low_share: shares.0,
-        clipped_high_share: shares.1,
-    })
+        clipped_low_share: 0.0,
+        clipped_high_share: 0.0,
+    }
+}
+
+/// Shares of samples stuck at either end of a channel; none where it cannot be told to be stuck.
+fn stuck_shares(recording: &Recording, channel: &ChannelQuality, sample: &Sample) -> io::Result<Option<(f64, f64)>> {
+    let index = NAMES.iter().position(|(name, _)| *name == channel.name).unwrap_or(0);
+    if !sample.tells_stuck(index, channel) {
+        return Ok(None);
+    }
+    let mut runs = StuckRuns::default();
+    for chunk in recording.samples.chunks() {
+        COLUMNS[index](&chunk?).iter().for_each(|&value| runs.push(value, channel.lowest, channel.highest));
+    }
+    Ok(Some(runs.shares(channel.lowest, channel.highest)))
 }
 
 /// Fastest change over 50 ms, less what noise alone would show.

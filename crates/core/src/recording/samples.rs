@@ -117,6 +117,26 @@ impl Samples {
         Ok(Chunk { data, layout: self.layout, first_row: rows.start, n_rows: rows.len() })
     }
 
+    /// Rows `rows` alone, from the first chunk on; as many stay in memory as of a recording that is read.
+    ///
+    /// # Errors
+    /// Where a temporary file cannot be read or written.
+    pub fn slice(&self, rows: Range<usize>) -> io::Result<Self> {
+        let mut builder = SamplesBuilder::new(self.layout.has_force, self.layout.has_temperature, MEMORY_ROWS);
+        for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
+            let chunk = self.chunk(index)?;
+            let here = rows.start.max(chunk.first_row) - chunk.first_row
+                ..rows.end.min(chunk.first_row + chunk.n_rows) - chunk.first_row;
+            let part = |column: &'_ [f64]| column.get(here.clone()).map(<[f64]>::to_vec).unwrap_or_default();
+            let columns =
+                [chunk.time_s(), chunk.pressure_pa(), chunk.length_m(), chunk.force_n(), chunk.temperature_k()]
+                    .map(part);
+            builder.extend(std::array::from_fn(|column| columns[column].as_slice())).map_err(|failed| failed.source)?;
+        }
+        let sliced = builder.finish().map_err(|failed| failed.source)?;
+        Ok(sliced.with_sensor_ranges(self.sensor_ranges))
+    }
+
     /// Every chunk in turn.
     pub fn chunks(&self) -> impl Iterator<Item = io::Result<Chunk>> + '_ {
         (0..self.n_chunks()).map(|index| self.chunk(index))
@@ -348,6 +368,16 @@ mod tests {
                 scope.spawn(|| check(&samples, 5 * CHUNK_ROWS + 9));
             }
         });
+    }
+
+    #[test]
+    fn a_slice_has_its_rows_from_its_first_chunk_on() {
+        let samples = build(3 * CHUNK_ROWS + 5, CHUNK_ROWS, true, false);
+        let rows = CHUNK_ROWS - 7..2 * CHUNK_ROWS + 11;
+        let slice = samples.slice(rows.clone()).unwrap();
+        let times: Vec<f64> = slice.chunks().flat_map(|chunk| chunk.unwrap().time_s().to_vec()).collect();
+        assert_eq!(times, rows.clone().map(|row| (row * 10) as f64).collect::<Vec<_>>());
+        assert_eq!(slice.chunk(1).unwrap().force_n()[0], ((rows.start + CHUNK_ROWS) * 10 + 3) as f64);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::io;
 use std::ops::Range;
 
 use pam_core::quality::RecordingQuality;
-use pam_core::recording::{Chunk, Recording};
+use pam_core::recording::{CHUNK_ROWS, Chunk, Recording};
 
 /// Windows that are looked at, in s: two swings of a hand, which trembles at 6 to 12 Hz.
 const WINDOW_S: f64 = 0.3;
@@ -77,8 +77,27 @@ impl Drive {
 /// # Errors
 /// Where samples cannot be read back.
 pub fn rows(recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<Range<usize>>> {
+    Ok(in_a_row(&windows(recording, quality)?, quality))
+}
+
+/// Rows of a window; none where the clock is too slow for any.
+fn window_rows(quality: &RecordingQuality) -> Option<usize> {
     let n = (WINDOW_S / quality.period_s).round() as usize;
-    let Some(force) = quality.channel("force").filter(|_| n >= LEAST_IN_WINDOW) else { return Ok(Vec::new()) };
+    (n >= LEAST_IN_WINDOW).then_some(n)
+}
+
+/// First rows of the windows in a chunk of so many rows, counted from its first.
+fn starts(n: usize, chunk_rows: usize) -> impl Iterator<Item = usize> {
+    (0..(chunk_rows + 1).saturating_sub(n)).step_by(n / 2)
+}
+
+/// First rows of the windows of `recording` in which a muscle is shaken, if enough of them follow one another. The ranges of its
+/// channels are those of `quality`.
+///
+/// # Errors
+/// Where samples cannot be read back.
+pub fn windows(recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<usize>> {
+    let Some((force, n)) = quality.channel("force").zip(window_rows(quality)) else { return Ok(Vec::new()) };
     let range_n = force.highest.abs().max(force.lowest.abs());
     let drives = ["pressure", "length"].map(|name| Drive::at_rest(quality, name, range_n));
     let [Some(pressure), Some(length)] = drives else { return Ok(Vec::new()) };
@@ -95,24 +114,37 @@ pub fn rows(recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec
                 spread_n > TIMES_EXPLAINED * by_pressure_n.hypot(by_length_n).hypot(force.any_noise())
             })
     };
-    let mut windows: Vec<Range<usize>> = Vec::new();
-    let mut found: Vec<Range<usize>> = Vec::new();
+    let mut found = Vec::new();
     for chunk in recording.samples.chunks() {
         let chunk = chunk?;
-        for start in (0..(chunk.n_rows() + 1).saturating_sub(n)).step_by(n / 2) {
-            let rows = chunk.first_row() + start..chunk.first_row() + start + n;
-            if is_shaken(&chunk, start..start + n) {
-                windows.push(rows);
-            } else {
-                found.extend(together(&windows));
-                windows.clear();
-            }
-        }
+        let shaken = starts(n, chunk.n_rows()).filter(|&start| is_shaken(&chunk, start..start + n));
+        found.extend(shaken.map(|start| chunk.first_row() + start));
     }
-    found.extend(together(&windows));
-    let n_rows = recording.samples.n_rows();
+    Ok(found)
+}
+
+/// Rows of a recording with that `quality` in which its shaken [`windows`] make it one stretch after the other.
+pub fn in_a_row(windows: &[usize], quality: &RecordingQuality) -> Vec<Range<usize>> {
+    let (Some(n), n_rows) = (window_rows(quality), quality.n_rows) else { return Vec::new() };
+    // The window after the last one of a chunk is the first one of the next chunk that has any.
+    let next = |start: usize| {
+        let first = start / CHUNK_ROWS * CHUNK_ROWS;
+        let chunk_rows = CHUNK_ROWS.min(n_rows - first);
+        let after = start + n / 2;
+        if after - first + n <= chunk_rows { after } else { first + CHUNK_ROWS }
+    };
+    let mut found: Vec<Range<usize>> = Vec::new();
+    let mut together_now: Vec<Range<usize>> = Vec::new();
+    for &start in windows {
+        if together_now.last().is_some_and(|last| next(last.start) != start) {
+            found.extend(together(&together_now));
+            together_now.clear();
+        }
+        together_now.push(start..start + n);
+    }
+    found.extend(together(&together_now));
     // A shake begins and ends within a window.
-    Ok(found.into_iter().map(|rows| rows.start.saturating_sub(n / 2)..(rows.end + n / 2).min(n_rows)).collect())
+    found.into_iter().map(|rows| rows.start.saturating_sub(n / 2)..(rows.end + n / 2).min(n_rows)).collect()
 }
 
 /// Windows one after the other as one stretch, where they are enough.

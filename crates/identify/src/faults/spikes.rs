@@ -67,33 +67,78 @@ struct Spike {
     is_gross: bool,
 }
 
-/// Spikes of a recording.
-fn all(recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<Spike>> {
-    let columns: [(&'static str, Column, f64, &'static str); 3] = [
-        ("force", Chunk::force_n, 1.0, "N"),
-        ("pressure", Chunk::pressure_pa, 1e-3, "kPa"),
-        ("length", Chunk::length_m, 1e3, "mm"),
-    ];
-    let mut spikes = Vec::new();
-    for (channel, column, scale, unit) in columns {
-        let mut spread: Vec<f64> = Vec::new();
-        let stride = (recording.samples.n_rows() / 4096).max(1);
-        for chunk in recording.samples.chunks() {
-            spread.extend(column(&chunk?).iter().step_by(stride));
-        }
+/// The channels that are looked at: name, values, and what a message multiplies them by and calls them.
+const CHANNELS: [(&str, Column, f64, &str); 3] = [
+    ("force", Chunk::force_n, 1.0, "N"),
+    ("pressure", Chunk::pressure_pa, 1e-3, "kPa"),
+    ("length", Chunk::length_m, 1e3, "mm"),
+];
+
+/// How far a sample of a channel must leap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Leap {
+    /// To be a spike, in SI.
+    pub least: f64,
+    /// To make every range meaningless.
+    pub gross: f64,
+}
+
+impl Leap {
+    /// From values [spread](spread_rows) over a channel and its noise; none where they are too few or never vary.
+    pub fn of(mut spread: Vec<f64>, noise: f64) -> Option<Self> {
         if spread.len() < 4 * AROUND {
-            continue;
+            return None;
         }
         spread.sort_unstable_by(f64::total_cmp);
         // A hundredth on either side may be spikes.
         let cut = spread.len() / 100 + 1;
         let range = spread[spread.len() - 1 - cut] - spread[cut];
-        let noise = quality.channel(channel).map_or(0.0, |channel| channel.noise);
         let least = (SHARE_OF_RANGE * range).max(TIMES_NOISE * noise);
-        if least <= 0.0 {
-            continue;
+        (least > 0.0).then(|| Self { least, gross: GROSS * range.max(least) })
+    }
+}
+
+/// Every how many rows of a chunk stand for the range of a recording of `n_rows`.
+pub fn spread_stride(n_rows: usize) -> usize {
+    (n_rows / 4096).max(1)
+}
+
+/// Whether `n_spikes` of a channel are so many that they are how the muscle is driven.
+pub fn are_many(n_spikes: usize, n_rows: usize) -> bool {
+    200 * n_spikes > n_rows
+}
+
+/// Rows of a chunk, counted from its first, whose force, pressure and length leap.
+pub fn leaping(chunk: &Chunk, leaps_by: &[Option<f64>; 3]) -> [Vec<usize>; 3] {
+    std::array::from_fn(|index| {
+        let mut rows = Vec::new();
+        if let Some(least) = leaps_by[index] {
+            leaps(CHANNELS[index].1(chunk), least, &mut rows);
         }
-        let gross = GROSS * range.max(least);
+        rows
+    })
+}
+
+/// Force, pressure and length of a row of a chunk, counted from its first, in SI.
+pub fn values(chunk: &Chunk, row: usize) -> [f64; 3] {
+    CHANNELS.map(|(_, column, ..)| column(chunk)[row])
+}
+
+/// White noise of force, pressure and length.
+pub fn noises(quality: &RecordingQuality) -> [f64; 3] {
+    CHANNELS.map(|(name, ..)| quality.channel(name).map_or(0.0, |channel| channel.noise))
+}
+
+/// Spikes of a recording.
+fn all(recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<Spike>> {
+    let mut spikes = Vec::new();
+    let noises = noises(quality);
+    for (index, (channel, column, scale, unit)) in CHANNELS.into_iter().enumerate() {
+        let mut values: Vec<f64> = Vec::new();
+        for chunk in recording.samples.chunks() {
+            values.extend(column(&chunk?).iter().step_by(spread_stride(recording.samples.n_rows())));
+        }
+        let Some(Leap { least, gross }) = Leap::of(values, noises[index]) else { continue };
         let mut found = Vec::new();
         for chunk in recording.samples.chunks() {
             let chunk = chunk?;
@@ -107,8 +152,7 @@ fn all(recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec<Spik
                 found.push(Spike { row, channel, words, is_gross: gross_rows.contains(&here) });
             }
         }
-        // Where many leap, it is no spike but how the muscle is driven.
-        if 200 * found.len() <= recording.samples.n_rows() {
+        if !are_many(found.len(), recording.samples.n_rows()) {
             spikes.extend(found);
         }
     }

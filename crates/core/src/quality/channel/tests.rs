@@ -27,15 +27,6 @@ fn a_quantized_channel_shows_its_step_and_a_fine_one_shows_none() {
 }
 
 #[test]
-fn a_channel_stuck_at_its_end_is_counted() {
-    let mut counter = StuckCounter::new(-9.0, 5.0);
-    for index in 0..100 {
-        counter.push(if index < 40 { -9.0 } else { f64::from(index % 7) - 1.0 });
-    }
-    assert_eq!(counter.shares(), (0.4, 0.0));
-}
-
-#[test]
 fn a_motion_that_a_slow_clock_hardly_follows_is_no_noise() {
     let mut generator = rand_pcg::Pcg64::seed_from_u64(3);
     let normal = Normal::new(0.0, 2e-5).unwrap();
