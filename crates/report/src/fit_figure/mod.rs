@@ -16,6 +16,8 @@
 mod characteristic;
 mod clean;
 mod convergence;
+mod curve_labels;
+mod curves;
 mod histogram;
 mod residual_map;
 mod residual_time;

@@ -24,7 +24,13 @@ pub(super) fn pressure(canvas: &mut Canvas<'_>, cell: Rect, map: &InverseMap) {
     let values = map.values(|network_kpa, _| network_kpa);
     let (lowest, highest) = extent(values.iter().copied().flatten());
     let axis = Axis::linear("", lowest, highest, 5);
-    let bar = ColorBar { title: "pressure (kPa)".to_owned(), from: axis.from, to: axis.to, color: stepped_sequential };
+    let bar = ColorBar {
+        title: "pressure (kPa)".to_owned(),
+        from: axis.from,
+        to: axis.to,
+        logarithm: false,
+        color: stepped_sequential,
+    };
     let panel = map.draw(canvas, cell, &values, &bar);
     let levels = round_levels(lowest, highest, 9);
     for level in levels.iter().filter(|level| **level > lowest) {
@@ -52,7 +58,13 @@ pub(super) fn slope(canvas: &mut Canvas<'_>, cell: Rect, map: &SlopeMap) {
     let values: Vec<Option<f64>> = map.cells.iter().map(rising).collect();
     let (_, highest) = extent(values.iter().copied().flatten());
     let axis = Axis::linear("", 0.0, highest, 5);
-    let bar = ColorBar { title: "dF/dp (N/kPa)".to_owned(), from: 0.0, to: axis.to, color: stepped_sequential };
+    let bar = ColorBar {
+        title: "dF/dp (N/kPa)".to_owned(),
+        from: 0.0,
+        to: axis.to,
+        logarithm: false,
+        color: stepped_sequential,
+    };
     let n_rows = map.cells.len() / map.n_columns.max(1);
     let (columns, rows) = (length_axis(map.length_mm), exact_axis("pressure (kPa)", map.pressure_kpa));
     let (columns, rows) = (Bins::Equal(columns, map.n_columns), Bins::Equal(rows, n_rows));
@@ -97,6 +109,7 @@ pub(super) fn error(canvas: &mut Canvas<'_>, cell: Rect, maps: &[InverseMap; 2])
     let values: Vec<Option<f64>> = map.cells.iter().map(error_kpa).collect();
     let limit_kpa = limit_kpa(maps);
     let bar = ColorBar {
+        logarithm: false,
         title: "error (kPa)".to_owned(),
         from: -limit_kpa,
         to: limit_kpa,
