@@ -25,7 +25,7 @@ pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], additions: Option<
     let width = WIDTH.max(legend_width(&keys) + 16.0);
     Canvas::document(width as u32, height as u32, title, |canvas, sheet| {
         let panel = Panel {
-            frame: Rect { left: 152.0, top: 36.0, right: sheet.right - 66.0, bottom: height - 46.0 },
+            frame: Rect { left: 166.0, top: 36.0, right: sheet.right - 66.0, bottom: height - 46.0 },
             x: Axis::exact("residual, root mean square (N)", 0.0, 1.04 * largest, 6),
             y: Axis::exact("", 0.0, 1.0, 1),
             upward_labels: false,

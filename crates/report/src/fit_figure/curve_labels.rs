@@ -6,6 +6,9 @@ use super::curves::{Mean, curves};
 use super::sweeps::Sweep;
 use crate::plot::{Anchor, Canvas, Color, Panel, palette, text_width};
 
+/// Size of a label within the panel, in pixels.
+const SIZE: f64 = 11.0;
+
 /// What is written at the right ends of curves: the other channel's value.
 pub(super) fn labels(
     abscissa: Abscissa,
@@ -47,22 +50,33 @@ pub(super) fn label_within(
     (abscissa, (lowest, highest)): (Abscissa, (f64, f64)),
     sweeps: &[Sweep<'_>],
 ) {
-    const SIZE: f64 = 11.0;
-    let mut written: Vec<(f64, f64)> = Vec::new();
-    for Sweep { recording, rows, level, .. } in sweeps {
-        let (along, force_n) = (&abscissa.along(recording)[rows.clone()], &recording.force_n[rows.clone()]);
+    let ends = sweeps.iter().filter_map(|Sweep { recording, rows, level, .. }| {
+        let along = &abscissa.along(recording)[rows.clone()];
         let (low, high) = (quantile(along, 0.03), quantile(along, 0.97));
-        if high - low < 0.4 * (highest - lowest) || high >= highest - 0.2 * (highest - lowest) {
-            continue;
-        }
-        let Some(end) = (0..along.len()).max_by(|a, b| along[*a].total_cmp(&along[*b])) else { continue };
-        let (x, y) = panel.at(along[end], force_n[end]);
-        let text = abscissa.level_text(*level);
-        // Curves rise: to the left above the end there is room.
-        let fits = x - 4.0 - text_width(&text, SIZE) > panel.frame.left;
-        if fits && written.iter().all(|at| (at.0 - x).abs() > 60.0 || (at.1 - y).abs() > 14.0) {
-            canvas.text(&text, (x - 4.0, y - 9.0), Anchor::End, SIZE, palette::GRAY);
-            written.push((x, y));
+        let ends_within = high - low >= 0.4 * (highest - lowest) && high < highest - 0.2 * (highest - lowest);
+        let end = (0..along.len()).max_by(|a, b| along[*a].total_cmp(&along[*b]))?;
+        ends_within.then(|| (panel.at(along[end], recording.force_n[rows.start + end]), abscissa.level_text(*level)))
+    });
+    // Some hundred points of each curve, in pixels: a label must not lie on one.
+    let mut taken: Vec<(f64, f64)> = sweeps
+        .iter()
+        .flat_map(|Sweep { recording, rows, .. }| {
+            let along = abscissa.along(recording);
+            let every = (rows.len() / 300).max(1);
+            rows.clone().step_by(every).map(|row| panel.at(along[row], recording.force_n[row]))
+        })
+        .collect();
+    for ((x, y), text) in ends {
+        let width = text_width(&text, SIZE);
+        let places = [(x + 6.0, y), (x - 4.0 - width, y - 9.0), (x + 6.0, y + 9.0), (x - 0.5 * width, y - 11.0)];
+        let is_free = |(left, middle): &(f64, f64)| {
+            let inside = *left > panel.frame.left && left + width < panel.frame.right && middle - 6.0 > panel.frame.top;
+            inside
+                && !taken.iter().any(|(x, y)| (left - 2.0..left + width + 2.0).contains(x) && (y - middle).abs() < 8.0)
+        };
+        if let Some((left, middle)) = places.into_iter().find(is_free) {
+            canvas.text(&text, (left, middle), Anchor::Start, SIZE, palette::GRAY);
+            taken.extend([0.0, 0.5, 1.0].map(|share| (left + share * width, middle)));
         }
     }
 }
