@@ -71,7 +71,8 @@ fn gain(evidence: &Evidence) -> String {
 }
 
 fn value(entry: &ParameterEntry) -> String {
-    let value = match entry.stderr {
+    // At a bound a standard error says nothing, and would make the table wider than a terminal.
+    let value = match entry.stderr.filter(|_| entry.status != ParameterStatus::AtBound) {
         Some(stderr) => engineering_with_stderr(entry.value, stderr, &entry.unit),
         None => engineering(entry.value, &entry.unit, 3),
     };

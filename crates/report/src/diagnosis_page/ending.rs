@@ -45,8 +45,8 @@ pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Strin
         html.push_str(&heading("A loop before and after"));
         let which = if stretch.is_closed() { "The closed loop" } else { "The stretch" };
         let caption = format!(
-            "{which} that gains most: {}. On the right a parabola through the measured force is taken off all three, \
-             so that the loop opens.",
+            "{which} that shows the effects best: {}. On the right a parabola through the measured force is taken off all three, \
+             so that the loop opens; lines are running means.",
             stretch.words()
         );
         html.push_str(&figure(&loops(&stretch)?, &caption));

@@ -20,6 +20,7 @@
 mod content;
 mod coordinate;
 mod correlation;
+mod course;
 mod empirical;
 pub(crate) mod ending;
 mod fit_bars;
