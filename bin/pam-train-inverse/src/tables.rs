@@ -1,4 +1,4 @@
-//! What a person sees on the terminal.
+//! Tables and messages for the terminal.
 
 use std::time::Duration;
 
@@ -101,7 +101,7 @@ pub(crate) fn regions(artifact: &InverseArtifact) -> String {
     format!("{}\n{}", wrapped(&heading, ""), table.to_terminal())
 }
 
-/// What a region is called.
+/// Name of a region.
 pub(crate) fn region_name(region: &RegionErrors) -> String {
     let between = |scale: f64, decimals: usize, unit: &str| {
         // A little below zero rounds to zero, and is written as that.

@@ -8,9 +8,9 @@ use crate::plot::{Anchor, Bins, Canvas, ColorBar, Map, Rect, palette, sequential
 pub struct ConfusionFigure {
     /// Headline.
     pub title: String,
-    /// What was concealed: names of the rows, from the top.
+    /// Concealed effects: names of the rows, from the top.
     pub concealed: Vec<String>,
-    /// What was named: names of the columns, from the left.
+    /// Named effects: names of the columns, from the left.
     pub named: Vec<String>,
     /// Cases, row by row.
     pub counts: Vec<Vec<usize>>,

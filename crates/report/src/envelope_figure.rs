@@ -19,7 +19,7 @@ pub struct EnvelopeFigure {
     pub envelope: Vec<(f64, [f64; 7])>,
     /// MAX, MAE and RMSE of every trial, in rad.
     pub errors_rad: [Vec<f64>; 3],
-    /// What the paper states for them, in rad; where the lift is the paper's.
+    /// The paper's values for them, in rad; where the lift is the paper's.
     pub paper_rad: Option<[f64; 3]>,
 }
 

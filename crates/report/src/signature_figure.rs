@@ -16,7 +16,7 @@ pub struct SignatureFigure {
 /// One panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SignaturePanel {
-    /// What is seen.
+    /// Title of the panel.
     pub title: String,
     /// Title of the horizontal axis, with unit.
     pub x_label: String,
@@ -96,7 +96,7 @@ fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
     let alone = panel.series.len() == 1;
     let colors = COLORS.iter().cycle().skip(usize::from(alone));
     for (index, (line, color)) in panel.series.iter().zip(colors).enumerate() {
-        // What is expected is broad and pale below what the effect does, so that both are seen where they coincide.
+        // The expected line is broad and pale below that of the effect, so that both are seen where they coincide.
         let (color, width) = match index {
             0 if alone => (color.faded(0.75), 1.1),
             0 => (color.faded(0.3), 5.0),

@@ -9,7 +9,7 @@ use super::{CONTRACTING, EXTENDING, Role};
 use crate::number::significant;
 use crate::plot::{Axis, Canvas, Key, Mark, Panel, Rect, density, legend, note, palette, round_levels, thin, title};
 
-/// What runs along the horizontal axis; the other of the two tells curves apart.
+/// The channel along the horizontal axis; the other of the two tells curves apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Abscissa {
     /// Length; curves differ in pressure.

@@ -9,7 +9,7 @@ use crate::plot::{Anchor, Canvas, Color, Panel, palette, text_width};
 /// Size of a label within the panel, in pixels.
 const SIZE: f64 = 11.0;
 
-/// What is written at the right ends of curves: the other channel's value.
+/// Labels at the right ends of curves: the other channel's value.
 pub(super) fn labels(
     abscissa: Abscissa,
     sweeps: &[Sweep<'_>],

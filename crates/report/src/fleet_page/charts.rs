@@ -175,7 +175,7 @@ fn spot(panel: &Panel, place: usize, value: f64) -> (f64, f64) {
     (x, y.clamp(panel.frame.top + EDGE, panel.frame.bottom - EDGE))
 }
 
-/// What the vertical axis covers: the limits and most values; one far outside stands at the edge.
+/// Extent of the vertical axis: the limits and most values; one far outside stands at the edge.
 fn extent(chart: &FleetChart) -> (f64, f64) {
     let scaled = |value: f64| if chart.logarithmic { value.ln() } else { value };
     let values = || chart.points.iter().map(|point| scaled(point.value)).filter(|value| value.is_finite());

@@ -117,7 +117,7 @@ pub(super) fn error(canvas: &mut Canvas<'_>, cell: Rect, maps: &[InverseMap; 2])
     };
     map.draw(canvas, cell, &values, &bar);
     let (y, _) = title(canvas, cell, "c", "Network less exact inverse, worse direction");
-    // What is outside the domain, panel a has said.
+    // Panel a shows the points outside the domain.
     if map.has_missing() {
         keys(canvas, cell, y + 2.0, true);
     }
@@ -196,7 +196,7 @@ fn draw_runs(
     panel
 }
 
-/// What the colors of errors end at: nearly all of them lie below.
+/// End of the colors of errors: nearly all of them lie below.
 fn limit_kpa(maps: &[InverseMap; 2]) -> f64 {
     let mut sizes: Vec<f64> =
         maps.iter().flat_map(|map| map.values(|network, exact| (network - exact).abs())).flatten().collect();

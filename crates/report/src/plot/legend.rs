@@ -27,9 +27,9 @@ pub enum Mark {
 /// An entry of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Key {
-    /// What is written.
+    /// Text.
     pub text: String,
-    /// What stands before it.
+    /// Mark before it.
     pub mark: Mark,
     /// Color of the mark.
     pub color: Color,

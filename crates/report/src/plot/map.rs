@@ -44,7 +44,7 @@ impl Bins {
     }
 }
 
-/// What the colors of a map mean.
+/// Meaning of a map's colors.
 #[derive(Debug, Clone)]
 pub struct ColorBar {
     /// Title with unit, written above the bar.
@@ -68,7 +68,7 @@ pub struct Map {
     pub rows: Bins,
     /// A value per cell, rows from the bottom, columns from the left; `None` stays blank.
     pub values: Vec<Option<f64>>,
-    /// What is written into each cell, in the same order; may be empty.
+    /// Text of each cell, in the same order; may be empty.
     pub texts: Vec<String>,
     /// Meaning of the colors.
     pub bar: ColorBar,

@@ -1,4 +1,4 @@
-//! What figures are made of: a canvas, axes, panels, color maps, legends.
+//! Parts of figures: a canvas, axes, panels, color maps, legends.
 //!
 //! A figure is a [`Canvas`] cut into [`Rect`]s; a [`Panel`] gives one of them axes and a frame and draws data
 //! on it; [`Map`] and [`Bars`] are panels over cells and over names.

@@ -23,7 +23,7 @@ use crate::plot::{Anchor, Canvas, Color, Rect, palette};
 pub struct PredictionFigure {
     /// Headline.
     pub title: String,
-    /// What it says in numbers.
+    /// Its statement in numbers.
     pub facts: Vec<String>,
     /// Time, in s.
     pub time_s: Vec<f64>,
