@@ -24,7 +24,7 @@ pub(crate) fn lift(
         format!("{name} {} / {}{beside}", mrad(&artifact.left.errors), mrad(&artifact.right.errors))
     };
     let subtitle = format!(
-        "Angle error in mrad, left / right{}:\u{2003}{}",
+        "Tracking error of the angle in mrad, left / right{}:\u{2003}{}",
         if paper.is_some() { " (paper)" } else { "" },
         [errors("MAX", |of| of.max), errors("MAE", |of| of.mae), errors("RMSE", |of| of.rmse)]
             .join("\u{2003}·\u{2003}")

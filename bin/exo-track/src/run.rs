@@ -23,7 +23,7 @@ use crate::args::Args;
 use crate::network::Network;
 use crate::{figure, tables, track};
 
-/// What `--example` writes.
+/// The file that `--example` writes.
 const EXAMPLE: &str = include_str!("../../../configs/lift.toml");
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
@@ -115,7 +115,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     Ok(verdict(&console, &outcomes))
 }
 
-/// What the run writes.
+/// Outputs of the run.
 struct Outputs {
     track: Option<Output>,
     metrics: Option<Output>,

@@ -1,4 +1,4 @@
-//! What a person reads of a lift.
+//! Tables of a lift.
 
 use pam_exo::artifact::{Quantiles, TrialMetrics};
 use pam_exo::metrics::{SignalErrors, TrackingErrors};
@@ -61,7 +61,7 @@ pub(crate) fn trials(trials: &TrialMetrics) -> String {
     format!("{}\n{}", wrapped(&heading, ""), table.to_terminal())
 }
 
-/// What each option is worth, in tables of a few cases that fit a terminal.
+/// Worth of each option, in tables of a few cases that fit a terminal.
 pub(crate) fn options(variants: &[Variant]) -> String {
     let heading = "What each option is worth: MAX / RMSE of the angle in mrad, over 5 seeds and both arms (! saturated, \
                     slack or given up)";

@@ -1,4 +1,4 @@
-//! What a person reads on the terminal.
+//! Tables and messages for the terminal.
 
 use pam_comparison::blocks::FEWEST_BLOCKS;
 use pam_core::artifact::ComparisonArtifact;
@@ -101,7 +101,7 @@ fn parameters(artifact: &ComparisonArtifact) -> String {
     format!("Parameters and effects\n{}", table.to_terminal())
 }
 
-/// What a person should know before believing the numbers.
+/// Warnings to read before the numbers are believed.
 pub(crate) fn warnings(artifact: &ComparisonArtifact) -> Vec<String> {
     let unfair: Vec<&str> = artifact
         .recordings

@@ -103,7 +103,7 @@ fn beside(member: &mut GroupMember, path: &Path) {
     member.logs.iter_mut().chain(&mut member.holdout).for_each(place);
 }
 
-/// What a person reads on the terminal.
+/// Tables and messages for the terminal.
 fn said(artifact: &GroupArtifact) -> String {
     let mut text = wrapped(&artifact.statement, "");
     text.push('\n');

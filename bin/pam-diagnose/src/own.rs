@@ -8,7 +8,7 @@ use pam_core::effects::sentence::custom_effects;
 use pam_core::effects::{CATALOGUE, Effect, Page, effect};
 use pam_core::spelling::unreadable;
 
-/// What `--effects` brought.
+/// Effects of `--effects`.
 #[derive(Debug, Default)]
 pub(crate) struct OwnEffects {
     /// The effects, in the order of the file.

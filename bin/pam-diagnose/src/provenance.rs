@@ -1,4 +1,4 @@
-//! What a report says of its own making.
+//! Provenance of a report.
 //!
 //! # Design
 //! Equal inputs give equal bytes, so the clock stays out: the date is that of `SOURCE_DATE_EPOCH` where it is set, as

@@ -120,7 +120,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<pam_cli::Verdict> {
     })
 }
 
-/// What was asked for, opened before any work.
+/// Requested outputs, opened before any work.
 struct Outputs {
     out: Option<Output>,
     model: Option<Output>,

@@ -127,7 +127,7 @@ fn word(verdict: ChangeVerdict) -> &'static str {
     }
 }
 
-/// What a person reads on the terminal.
+/// Tables and messages for the terminal.
 fn text(artifact: &ChangeArtifact) -> String {
     let mut text = wrapped(&format!("{}: {}", word(artifact.verdict), artifact.statement), "");
     text.push('\n');

@@ -1,4 +1,4 @@
-//! What a person reads on the terminal.
+//! Tables and messages for the terminal.
 
 use pam_core::artifact::DiagnosisArtifact;
 use pam_core::artifact::diagnosis::{BeforeAfter, Evidence, Region, Residual, Verdict};
@@ -46,7 +46,7 @@ fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// What was left out, with values.
+/// Excluded candidates, with values.
 fn effects(artifact: &DiagnosisArtifact) -> Option<String> {
     if artifact.effects.is_empty() {
         return None;
@@ -71,7 +71,8 @@ fn gain(evidence: &Evidence) -> String {
 }
 
 fn value(entry: &ParameterEntry) -> String {
-    let value = match entry.stderr {
+    // At a bound a standard error says nothing, and would make the table wider than a terminal.
+    let value = match entry.stderr.filter(|_| entry.status != ParameterStatus::AtBound) {
         Some(stderr) => engineering_with_stderr(entry.value, stderr, &entry.unit),
         None => engineering(entry.value, &entry.unit, 3),
     };
@@ -133,7 +134,7 @@ fn places(title: &str, regions: &[Region]) -> Option<String> {
     (!regions.is_empty()).then(|| table.to_terminal())
 }
 
-/// What was weighed, the best first.
+/// Candidates, the best first.
 fn candidates(artifact: &DiagnosisArtifact) -> Option<String> {
     if artifact.candidates.is_empty() {
         return None;
@@ -146,7 +147,7 @@ fn candidates(artifact: &DiagnosisArtifact) -> Option<String> {
     Some(table.to_terminal())
 }
 
-/// What to record next.
+/// The recording to make next.
 fn next(artifact: &DiagnosisArtifact) -> Option<String> {
     if let Some(next) = &artifact.next_experiment {
         return Some(format!("{}\n", wrapped(&format!("What to record next: {}", next.instruction), "")));
@@ -170,7 +171,7 @@ const RIVALS: usize = 2;
 /// Which effects the recordings could tell apart: each with those that it looks most like.
 pub(crate) fn isolability(artifact: &DiagnosisArtifact) -> String {
     let found = &artifact.isolability;
-    // What stays hidden is compared with nothing.
+    // Hidden effects are compared with nothing.
     let compared =
         |index: &usize| found.cosine[*index].iter().enumerate().any(|(at, &cosine)| at != *index && cosine > 0.0);
     let (shown, hidden): (Vec<usize>, Vec<usize>) = (0..found.ids.len()).partition(compared);

@@ -14,7 +14,7 @@ use desk::{Desk, logs};
 
 const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-group-1.json");
 
-/// What makes a muscle of the nominal one.
+/// Parameters that make a muscle of the nominal one.
 type Change = fn(&mut Parameters);
 
 /// Muscles, and how each differs from the nominal one.

@@ -91,7 +91,7 @@ fn wanted(args: &Args, artifact: &ModelArtifact, console: &Console) -> Augmented
     model.elsewhere()
 }
 
-/// What is exported.
+/// The export.
 struct Export {
     artifact: ModelArtifact,
     model: AugmentedModel,

@@ -6,7 +6,7 @@ use pam_fleet_survey::control::Chart;
 use pam_fleet_survey::groups::GroupShift;
 use pam_fleet_survey::record::Record;
 use pam_fleet_survey::survey::Survey;
-use pam_report::number::{engineering, engineering_with_stderr};
+use pam_report::number::{engineering, engineering_with_stderr, significant};
 use pam_report::{
     FleetCampaign, FleetChange, FleetChart, FleetPage, FleetPoint, FleetRefusal, FleetShift, FleetStanding, PageVerdict,
 };
@@ -92,7 +92,8 @@ fn campaign(record: &Record, folder: Option<&str>) -> FleetCampaign {
 
 fn group(shift: &GroupShift, chart: &Chart, quantity: String) -> FleetShift {
     let size = if chart.logarithmic {
-        format!("{:+.3} %", 100.0 * (shift.shift.exp() - 1.0))
+        let percent = 100.0 * (shift.shift.exp() - 1.0);
+        format!("{}{} %", if percent > 0.0 { "+" } else { "" }, significant(percent, 3))
     } else {
         let stderr = (shift.shift / shift.distance).abs();
         engineering_with_stderr(shift.shift, stderr, &chart.unit)

@@ -19,7 +19,7 @@ use pam_report::PictureFormat;
 use crate::args::{Args, BladderArg, Example, FormArg, FrictionArg};
 use crate::{figure, shards, tables};
 
-/// What `--example` writes.
+/// The file that `--example` writes.
 const MUSCLE: &str = include_str!("../../../configs/muscle-nominal.toml");
 const CHANNELS: &str = include_str!("../../../configs/bench.toml");
 
@@ -75,7 +75,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     hashes.extend(estimation.iter().map(|recording| Input::recording(recording, InputRole::Estimation)));
     hashes.extend(validation.iter().map(|recording| Input::recording(recording, InputRole::Validation)));
 
-    // What is read once is fitted twice: a pipe is empty after the first time.
+    // Recordings are read once and fitted twice: a pipe is empty after the first time.
     let for_comparison = (args.compare_forms && !args.run.check).then(|| (estimation.clone(), validation.clone()));
     let checked = check(request(args, args.form.form(), muscle.clone(), estimation, validation))?;
     console.text(tables::gate(checked.gates()));

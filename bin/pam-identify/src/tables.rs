@@ -1,4 +1,4 @@
-//! What a person reads on the terminal.
+//! Tables and messages for the terminal.
 
 use pam_core::artifact::ModelArtifact;
 use pam_core::artifact::model::{FitStatistics, ParameterEntry, ParameterStatus};
@@ -70,7 +70,7 @@ fn overview(gates: &[Gated]) -> Table {
     table
 }
 
-/// What a person should look at, in few words each.
+/// Remarks for a person, in few words each.
 fn odd(quality: &RecordingQuality) -> Vec<String> {
     let mut odd: Vec<String> = gaps(quality).into_iter().collect();
     for channel in &quality.channels {
@@ -235,7 +235,7 @@ fn counted(statistics: &FitStatistics) -> String {
     format!("{percent:.1} %")
 }
 
-/// What the columns reach without bounds.
+/// Residual of the columns without bounds.
 pub(crate) fn unbounded(artifact: &ModelArtifact) -> Option<String> {
     let unbounded = artifact.unbounded.as_ref()?;
     let mut table = Table::new(["implied by free weights", "value", ""]);

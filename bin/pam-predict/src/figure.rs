@@ -28,7 +28,7 @@ pub(crate) fn svg(followed: &Prediction, prepared: &Prepared) -> anyhow::Result<
     })?)
 }
 
-/// What the figure says in numbers.
+/// The figure's statement in numbers.
 fn facts(followed: &Prediction) -> Vec<String> {
     let mut facts = Vec::new();
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);

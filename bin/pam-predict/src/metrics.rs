@@ -1,4 +1,4 @@
-//! What a prediction is worth, for other programs.
+//! Metrics of a prediction, for other programs.
 
 use pam_core::artifact::prediction::{PredictConfig, PredictionArtifact, SCHEMA};
 use pam_core::artifact::{Input, Tool};

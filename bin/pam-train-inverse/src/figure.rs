@@ -57,7 +57,7 @@ fn inverse_map(outcome: &Outcome, exact: &ExactInverse, direction: f64) -> Inver
     let lengths_m: Vec<f64> = (0..COLUMNS)
         .map(|column| middle(inverse_box.length_m[0], inverse_box.length_span_m(), column, COLUMNS))
         .collect();
-    // Lowest and highest force at any pressure of the box.
+    // Lowest and highest force at any pressure of the operating range.
     let occurring: Vec<(f64, f64)> = lengths_m
         .iter()
         .map(|&length_m| {
@@ -69,7 +69,7 @@ fn inverse_map(outcome: &Outcome, exact: &ExactInverse, direction: f64) -> Inver
             (0..=PRESSURES).map(force_n).fold((f64::NAN, f64::NAN), |(low, high), n| (low.min(n), high.max(n)))
         })
         .collect();
-    // The map ends where no length has a higher force, which may be far below the end of the box.
+    // The map ends where no length has a higher force, which may be far below the end of the operating range.
     let [lowest_n, highest_n] = inverse_box.force_n;
     let reached_n = occurring.iter().map(|range| range.1).fold(lowest_n, f64::max).min(highest_n);
     let top_n = if reached_n > lowest_n { reached_n } else { highest_n };

@@ -127,7 +127,7 @@ fn check_numbers(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What the network is compared with, over points that were judged.
+/// The reference of the network, over points that were judged.
 pub(crate) struct Timing {
     /// One evaluation of the network.
     pub(crate) network: Duration,

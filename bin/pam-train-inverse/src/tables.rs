@@ -1,4 +1,4 @@
-//! What a person sees on the terminal.
+//! Tables and messages for the terminal.
 
 use std::time::Duration;
 
@@ -37,8 +37,8 @@ pub(crate) fn training(artifact: &InverseArtifact, time: Duration) -> String {
 fn ended(ended: Ended) -> &'static str {
     match ended {
         Ended::GoalReached => "goal reached",
-        Ended::Converged => "no lower cost to be found",
-        Ended::NoBetterValidation => "no better validation error",
+        Ended::Converged => "no lower cost found",
+        Ended::NoBetterValidation => "validation stalled",
         Ended::EpochsUsedUp => "epochs used up",
         Ended::Diverged => "weights ran away",
     }
@@ -64,7 +64,7 @@ pub(crate) fn errors(artifact: &InverseArtifact) -> String {
     format!("Accuracy on {} points that the training never saw\n{}", errors.pressure_pa.n, table.to_terminal())
 }
 
-/// Pressure errors by region, and what of the box has no inverse.
+/// Pressure errors by region, and the share of the operating range that has no inverse.
 pub(crate) fn regions(artifact: &InverseArtifact) -> String {
     let errors = &artifact.errors;
     let mut table = Table::new(["where", "RMSE kPa", "95 % kPa", "largest kPa", "points"]);
@@ -101,10 +101,13 @@ pub(crate) fn regions(artifact: &InverseArtifact) -> String {
     format!("{}\n{}", wrapped(&heading, ""), table.to_terminal())
 }
 
-/// What a region is called.
+/// Name of a region.
 pub(crate) fn region_name(region: &RegionErrors) -> String {
     let between = |scale: f64, decimals: usize, unit: &str| {
-        format!("{:.decimals$} to {:.decimals$} {unit}", region.from * scale, region.to * scale)
+        // A little below zero rounds to zero, and is written as that.
+        let power = 10f64.powi(decimals as i32);
+        let [from, to] = [region.from, region.to].map(|end| (end * scale * power).round() / power + 0.0);
+        format!("{from:.decimals$} to {to:.decimals$} {unit}")
     };
     match region.coordinate.as_str() {
         "pressure_pa" => format!("pressure {}", between(1e-3, 0, "kPa")),

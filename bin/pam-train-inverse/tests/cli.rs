@@ -40,7 +40,7 @@ fn refused(folder: &Path, output: &Output) -> String {
     text
 }
 
-/// What training on a changed model says.
+/// Message of a training on a changed model.
 fn refused_model(change: Change) -> String {
     let folder = folder_with(&model_json(change));
     refused(folder.path(), &train(folder.path(), &["--figure", "inverse.svg"]))
@@ -127,7 +127,7 @@ fn another_language_reads_the_weights_and_agrees() {
     }
 }
 
-/// What the example script prints; none where there is no Python.
+/// Output of the example script; none where there is no Python.
 #[expect(clippy::print_stderr, reason = "a skipped test must be seen")]
 fn python(artifact: &Path, points: &str) -> Option<String> {
     let script: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/evaluate-inverse.py");

@@ -94,7 +94,7 @@ pub enum OutputError {
     Io {
         /// Path as given.
         path: PathBuf,
-        /// What the system said.
+        /// Message of the system.
         reason: std::io::Error,
     },
 }

@@ -27,11 +27,11 @@ fn crates() -> Vec<(String, String)> {
 fn every_crate_is_on_the_map_under_its_name() {
     let map = fs::read_to_string(root().join("crates/README.md")).unwrap();
     let front = fs::read_to_string(root().join("README.md")).unwrap();
+    assert!(front.contains("](crates/README.md)"), "README.md does not lead to the map");
     for (folder, package) in crates() {
         let row = map.lines().find(|line| line.starts_with('|') && line.contains(&format!("]({folder})")));
         let row = row.unwrap_or_else(|| panic!("crates/README.md has no row for crates/{folder}"));
         assert!(row.contains(&format!("`{package}`")), "crates/{folder} is the package {package}: {row}");
-        assert!(front.contains(&format!("crates/{folder}")), "README.md does not mention crates/{folder}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! What reading a recording costs beside walking over the same file with `csv` and parsing each field.
+//! Cost of reading a recording beside walking over the same file with `csv` and parsing each field.
 
 #![expect(clippy::unwrap_used, reason = "a benchmark may panic")]
 

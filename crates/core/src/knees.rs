@@ -66,7 +66,7 @@ impl Knees {
         Self { bent: bent.collect(), period_s }
     }
 
-    /// What the knees so far have added to the path at `row`.
+    /// Sum that the knees so far have added to the path at `row`.
     pub(crate) fn added(&self, row: usize) -> f64 {
         let row = row as f64;
         match self.bent.partition_point(|bent| bent.knee.at <= row) {
@@ -154,7 +154,7 @@ impl Knee {
         straightened(&mut around);
         let dot = |left: &[f64], right: &[f64]| left.iter().zip(right).map(|(left, right)| left * right).sum::<f64>();
         let reach = (half * STEPS_PER_ROW - STEPS_PER_ROW) as i32;
-        // What may as well bend evenly is no knee.
+        // A path that may as well bend evenly has no knee.
         let mut bow: Vec<f64> = (0..n).map(|index| (index as f64 - half as f64).powi(2)).collect();
         straightened(&mut bow);
         let bowed = dot(&bow, &around).powi(2) / dot(&bow, &bow);

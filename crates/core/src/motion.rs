@@ -22,7 +22,7 @@ pub const NOISE_PER_THRESHOLD: f64 = 6.0 / DEVIATIONS_PER_THRESHOLD;
 pub struct Instant {
     /// Row of the recording.
     pub row: usize,
-    /// What effects see.
+    /// Instants as effects see them.
     pub moment: Moment,
     /// Force, in N; as recorded or smooth like the other channels.
     pub force_n: f64,

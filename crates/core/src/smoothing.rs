@@ -104,7 +104,7 @@ impl Window {
     }
 }
 
-/// What there is of a channel that is shorter than a window, or empty.
+/// The whole of a channel that is shorter than a window, or empty.
 fn short(channel: &[f64], at: usize) -> Parabola {
     channel.get(at).map_or(Parabola::default(), |&value| Parabola { value, ..Parabola::default() })
 }

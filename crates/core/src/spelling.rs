@@ -51,7 +51,7 @@ pub fn unreadable(path: &Path, reason: &io::Error) -> String {
     }
 }
 
-/// What a parser said of an unknown word, with the nearest word it knows in place of all of them where one is near.
+/// Message of a parser about an unknown word, with the nearest word it knows in place of all of them where one is near.
 ///
 /// Understands the sentences of serde: "unknown field `a`, expected one of `b`, `c`".
 pub(crate) fn suggesting(message: &str) -> String {

@@ -12,7 +12,7 @@ pub enum ConfigError {
     Read {
         /// File asked for.
         path: PathBuf,
-        /// What the system said.
+        /// Message of the system.
         reason: std::io::Error,
     },
     /// The text is not a configuration.
@@ -24,7 +24,7 @@ pub enum ConfigError {
         line: usize,
         /// Column, counted from 1.
         column: usize,
-        /// What the parser found.
+        /// Message of the parser.
         reason: String,
     },
     /// A value outside its range, or no number.
@@ -40,7 +40,7 @@ pub enum ConfigError {
         lowest: f64,
         /// Highest value accepted.
         highest: f64,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
     /// A time that is no whole number of steps.

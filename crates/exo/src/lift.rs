@@ -31,7 +31,7 @@ pub struct Lift<'a> {
     pub settle_s: f64,
     /// Plant.
     pub physics: &'a ArmPhysics,
-    /// What the controller believes.
+    /// Model of the controller.
     pub knowledge: &'a Knowledge<'a>,
     /// Gains and options.
     pub settings: &'a ControlSettings,
@@ -76,7 +76,7 @@ pub struct Instant {
     pub length_acceleration_m_per_s2: f64,
     /// State of the friction.
     pub friction_state: f64,
-    /// What the controller made of it.
+    /// Outcome of the controller.
     pub command: Command,
 }
 

@@ -74,7 +74,7 @@ impl Simulation<'_> {
         Lever::new(self.plan.upper_m, self.plan.lower_m, self.mounted_length_m())
     }
 
-    /// What the controller believes.
+    /// Model of the controller.
     pub fn knowledge(&self) -> Knowledge<'_> {
         let plan = self.plan;
         Knowledge {

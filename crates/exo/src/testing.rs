@@ -1,4 +1,4 @@
-//! What several tests start from.
+//! Starting points of several tests.
 
 use pam_core::effects::{AugmentedModel, Term, effect};
 use pam_core::force::{BaseParameters, ForceModel, Form};

@@ -12,7 +12,7 @@ pub struct TableError {
     pub line: u64,
     /// Field within the line, counted from 1.
     pub column: u64,
-    /// What is wrong there.
+    /// The fault there.
     pub kind: TableErrorKind,
 }
 

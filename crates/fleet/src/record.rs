@@ -39,7 +39,7 @@ pub struct NamedEffect {
 /// What is kept of a diagnosis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosed {
-    /// What is to be believed.
+    /// The verdict.
     pub verdict: Verdict,
     /// The same in words.
     pub statement: String,
@@ -60,7 +60,7 @@ pub struct Identified {
     pub rmse_n: f64,
     /// Residual on the held-out recordings, in N.
     pub holdout_rmse_n: Option<f64>,
-    /// What the sensors leave, in N.
+    /// Noise floor, in N.
     pub noise_n: f64,
 }
 

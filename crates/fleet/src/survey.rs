@@ -151,7 +151,10 @@ fn standing(
                 continue;
             }
             let side = if point.distance > 0.0 { "high" } else { "low" };
-            let words = format!("{} is {side}: {:.1} spreads from the others", chart.name, point.distance.abs());
+            let distance = point.distance.abs();
+            // Beyond a hundred spreads a decimal says nothing.
+            let decimals = usize::from(distance < 100.0);
+            let words = format!("{} is {side}: {distance:.decimals$} spreads from the others", chart.name);
             reasons[point.record].push(Reason { words, weight: point.distance.abs() / chart.limit });
         }
     }
@@ -187,7 +190,8 @@ fn own_reasons(record: &Record, common: &[(String, String, usize)]) -> Vec<Reaso
     reasons.extend(
         record
             .rejections()
-            .map(|(step, reason)| Reason { words: format!("{} rejected: {reason}", step.name()), weight: 2.0 }),
+            .map(|(step, reason)| (step.name(), reason.trim_start_matches("rejected: ")))
+            .map(|(step, reason)| Reason { words: format!("{step} rejected: {reason}"), weight: 2.0 }),
     );
     let implausible = record.diagnosed.iter().flat_map(|diagnosed| &diagnosed.implausible);
     reasons.extend(implausible.map(|words| Reason { words: words.clone(), weight: 1.0 }));

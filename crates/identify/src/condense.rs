@@ -46,7 +46,7 @@ pub struct Stretch {
     pub recording: usize,
     /// Its rows.
     pub rows: Range<usize>,
-    /// What they condense to.
+    /// Their summary.
     pub summary: Summary,
 }
 

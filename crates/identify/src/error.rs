@@ -10,7 +10,7 @@ pub enum IdentifyError {
     Samples {
         /// Recording.
         path: String,
-        /// What the system said.
+        /// Message of the system.
         reason: io::Error,
     },
     /// A recording has no force, which a fit needs.

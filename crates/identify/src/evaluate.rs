@@ -117,7 +117,7 @@ fn tally_augmented(
     Ok(tally)
 }
 
-/// What to say of a model that has no force for `n` of `n_counted` samples, the first of them `at`.
+/// Message about a model that has no force for `n` of `n_counted` samples, the first of them `at`.
 pub fn without_force(path: String, n: usize, n_counted: usize, at: NoForceAt, model: &ForceModel) -> IdentifyError {
     let strand_m = model.muscle().strand_length_m();
     let reason = if at.length_m >= strand_m {

@@ -16,7 +16,7 @@ use crate::faults;
 pub struct Gated {
     /// The recording.
     pub recording: Recording,
-    /// What it looks like.
+    /// Its appearance.
     pub quality: RecordingQuality,
 }
 
@@ -25,7 +25,7 @@ pub struct Gated {
 pub struct Prepared {
     /// The recording.
     pub recording: Recording,
-    /// What it looks like.
+    /// Its appearance.
     pub quality: RecordingQuality,
     /// Direction of motion of every row.
     pub direction: Direction,

@@ -20,7 +20,7 @@ pub struct Request {
     pub form: Form,
     /// Size of the search.
     pub options: FitOptions,
-    /// What a residual costs.
+    /// Cost of a residual.
     pub loss: Loss,
     /// Parameters fitted on their own that are otherwise one share of a composite: `C₀₁`, `f_ss`.
     pub free: Vec<Parameter>,

@@ -1,4 +1,4 @@
-//! What is fitted, within which range, and what is plausible for a muscle.
+//! Fitted parameters, their ranges, and the values that are plausible for a muscle.
 //!
 //! Two ranges stand beside each parameter. The *search* range holds every sign and size that physics
 //! allows for any muscle, commercial ones with molded ends included; the *plausible* range is that of
@@ -29,7 +29,7 @@ pub enum Free {
 pub struct Ranges {
     /// Where the search looks.
     pub search: (f64, f64),
-    /// What a braided muscle has.
+    /// Plausible range of a braided muscle.
     pub plausible: (f64, f64),
     /// Held there where an excitation cannot identify it.
     pub nominal: f64,
@@ -61,7 +61,7 @@ impl Free {
         }
     }
 
-    /// What usually stands behind an estimate below (or above) the plausible range.
+    /// The usual cause of an estimate below (or above) the plausible range.
     pub fn likely_cause(self, above: bool) -> &'static str {
         match (self, above) {
             (Self::One(Parameter::K1), _) => {
@@ -95,7 +95,7 @@ impl Free {
 /// The parameters that a fit moves, with everything else held.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchSpace {
-    /// What is moved, in the order of the unit box.
+    /// Free parameters, in the order of the unit box.
     pub free: Vec<Free>,
     /// Lowest and highest value of each, in SI.
     pub ranges: Vec<(f64, f64)>,

@@ -1,4 +1,4 @@
-//! What the box of pressures and lengths consists of: where the inverse exists, and why not elsewhere.
+//! The operating range of pressures and lengths: where the inverse exists, and why not elsewhere.
 
 use pam_core::artifact::inverse::Coverage;
 
@@ -24,7 +24,7 @@ pub enum Kind {
     Ambiguous,
 }
 
-/// Kinds over the box, rows of pressure from the lowest, columns of length from the shortest.
+/// Kinds over the operating range, rows of pressure from the lowest, columns of length from the shortest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoverageMap {
     /// Middles of the columns, in m.
@@ -66,7 +66,7 @@ pub fn map(inverse: &ExactInverse, direction: f64) -> CoverageMap {
     CoverageMap { length_m, pressure_pa, kinds }
 }
 
-/// Shares of the box over both directions.
+/// Shares of the operating range over both directions.
 pub fn coverage(inverse: &ExactInverse) -> Coverage {
     let kinds: Vec<Kind> = [-1.0, 1.0].into_iter().flat_map(|direction| map(inverse, direction).kinds).collect();
     let percent = |kind: Kind| 100.0 * kinds.iter().filter(|found| **found == kind).count() as f64 / kinds.len() as f64;

@@ -37,7 +37,7 @@ const BETWEEN: f64 = 0.2;
 /// Where points come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Draw {
-    /// Without gaps, and on the faces of the box too.
+    /// Without gaps, and on the faces of the operating range too.
     Design,
     /// Independently, moving one way or the other.
     Independent,

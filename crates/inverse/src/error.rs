@@ -72,7 +72,7 @@ pub enum InverseError {
     /// Samples of a recording cannot be read back.
     #[error("cannot read samples back: {reason}")]
     Samples {
-        /// What the system said.
+        /// Message of the system.
         reason: io::Error,
     },
 }

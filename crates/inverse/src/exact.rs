@@ -8,7 +8,7 @@
 //! and where it came slowly.
 //!
 //! # Design
-//! Whether the force rises everywhere is settled once, over the whole box with a margin for what lies between the
+//! Whether the force rises everywhere is settled once, over the whole operating range with a margin for what lies between the
 //! cells; then a query costs a handful of evaluations of the model. Otherwise every query searches its branch,
 //! which costs about 150.
 
@@ -84,7 +84,7 @@ pub struct ExactInverse {
 }
 
 impl ExactInverse {
-    /// The inverse of `model` inside a box, without its instruments, fixture and events; `min_slope_share` is the slope below which there is none, as a share
+    /// The inverse of `model` inside an operating range, without its instruments, fixture and events; `min_slope_share` is the slope below which there is none, as a share
     /// of the range of force over the range of pressure.
     pub fn new(model: impl Into<AugmentedModel>, inverse_box: InverseBox, min_slope_share: f64) -> Self {
         let model = model.into().of_the_muscle();
@@ -94,7 +94,7 @@ impl ExactInverse {
         inverse
     }
 
-    /// The smallest slope on a grid over the box, in N/Pa; negative infinity where a force is not finite.
+    /// The smallest slope on a grid over the operating range, in N/Pa; negative infinity where a force is not finite.
     fn smallest_slope_n_per_pa(&self) -> f64 {
         let span_pa = self.inverse_box.pressure_span_pa();
         let share = |cell: usize| cell as f64 / CELLS as f64;
@@ -127,7 +127,7 @@ impl ExactInverse {
         self.min_slope_n_per_pa
     }
 
-    /// Whether the inverse exists at every pressure, length and direction of the box, but for the range of force.
+    /// Whether the inverse exists at every pressure, length and direction of the operating range, but for the range of force.
     pub fn rises_everywhere(&self) -> bool {
         self.rises_everywhere
     }

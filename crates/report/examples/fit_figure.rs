@@ -52,7 +52,7 @@ fn recording(name: &str, role: Role, end_s: f64, drive: impl Fn(f64) -> (f64, f6
         recording.time_s.push(time_s);
         recording.pressure_kpa.push(pressure_kpa + 0.4 * noise.next());
         recording.length_mm.push(length_mm + 0.02 * noise.next());
-        // What the model leaves out: a taper of the ends that grows with contraction.
+        // Missing in the model: a taper of the ends that grows with contraction.
         let taper_n = 0.004 * pressure_kpa * ((REST_MM - length_mm) / 40.0).powi(3);
         recording.force_n.push(static_n + memory_n - taper_n + 0.9 * noise.next());
         recording.model_n.push(static_n + model_memory_n);

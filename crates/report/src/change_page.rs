@@ -29,7 +29,7 @@ pub struct ChangePage {
     pub verdict: String,
     /// In a sentence or two.
     pub statement: String,
-    /// What has changed.
+    /// Changes.
     pub changes: Vec<PageChange>,
     /// Everything else.
     pub unchanged: Vec<PageCompared>,
@@ -39,15 +39,15 @@ pub struct ChangePage {
     pub noise_floor_n: f64,
     /// Share of the samples that were compared.
     pub share_compared: f64,
-    /// What the baseline is called beside the measured force, and what it is called with the changes.
+    /// Names of the baseline and of the baseline with the changes, beside the measured force.
     pub names: [&'static str; 2],
     /// The later recordings.
     pub recordings: Vec<PageRecording>,
-    /// What was weighed: id, log predictive ratio, RMSE in N.
+    /// Candidates: id, log predictive ratio, RMSE in N.
     pub candidates: Vec<(String, f64, f64)>,
     /// How the comparison came about.
     pub appendix: PageAppendix,
-    /// What to know before use.
+    /// Warnings before use.
     pub warnings: Vec<String>,
 }
 
@@ -60,7 +60,7 @@ pub struct PageChange {
     pub numbers: Vec<PageCompared>,
     /// Cross-validated RMSE without and with it, in N.
     pub rmse_n: [f64; 2],
-    /// What it cannot be distinguished from.
+    /// Effects that it cannot be distinguished from.
     pub alternatives: Vec<String>,
 }
 

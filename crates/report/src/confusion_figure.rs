@@ -8,9 +8,9 @@ use crate::plot::{Anchor, Bins, Canvas, ColorBar, Map, Rect, palette, sequential
 pub struct ConfusionFigure {
     /// Headline.
     pub title: String,
-    /// What was concealed: names of the rows, from the top.
+    /// Concealed effects: names of the rows, from the top.
     pub concealed: Vec<String>,
-    /// What was named: names of the columns, from the left.
+    /// Named effects: names of the columns, from the left.
     pub named: Vec<String>,
     /// Cases, row by row.
     pub counts: Vec<Vec<usize>>,
@@ -44,7 +44,7 @@ pub fn confusion_figure(figure: &ConfusionFigure) -> Result<String, FigureError>
             .collect(),
         columns: Bins::Named("named".to_owned(), columns.clone()),
         rows: Bins::Named("concealed (cases)".to_owned(), names.clone()),
-        bar: ColorBar { title: "share of row".to_owned(), from: 0.0, to: 1.0, color: sequential },
+        bar: ColorBar { title: "share of row".to_owned(), from: 0.0, to: 1.0, logarithm: false, color: sequential },
     };
     let width = CELL * columns.len() as f64 + widest(&names) + 36.0 + 84.0 + 20.0;
     let height = 50.0 + 40.0 + CELL * rows.len() as f64 + widest(columns) + 46.0;

@@ -19,7 +19,7 @@ pub struct EnvelopeFigure {
     pub envelope: Vec<(f64, [f64; 7])>,
     /// MAX, MAE and RMSE of every trial, in rad.
     pub errors_rad: [Vec<f64>; 3],
-    /// What the paper states for them, in rad; where the lift is the paper's.
+    /// The paper's values for them, in rad; where the lift is the paper's.
     pub paper_rad: Option<[f64; 3]>,
 }
 
@@ -49,7 +49,7 @@ fn draw_envelope(canvas: &mut Canvas<'_>, cell: Rect, envelope: &[(f64, [f64; 7]
     let (lowest, highest) = finite().fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
     let end_s = envelope.last().map_or(1.0, |(time_s, _)| *time_s);
     let x = Axis::exact("time (s)", 0.0, end_s, 6);
-    let y = Axis::linear("angle error (mrad)", 1.1e3 * lowest, 1.1e3 * highest, 6);
+    let y = Axis::linear("tracking error (mrad)", 1.1e3 * lowest, 1.1e3 * highest, 6);
     let panel = Panel::new(cell, x, y, 16.0);
     panel.draw_frame(canvas);
     let column = |share: usize| envelope.iter().map(move |(time_s, shares)| (*time_s, 1e3 * shares[share]));
@@ -61,7 +61,7 @@ fn draw_envelope(canvas: &mut Canvas<'_>, cell: Rect, envelope: &[(f64, [f64; 7]
     }
     panel.line(canvas, [(0.0, 0.0), (end_s, 0.0)], palette::SILVER, 1.0);
     panel.line(canvas, column(3), palette::BLUE.toward(palette::INK, 0.4), 1.8);
-    let (y, _) = title(canvas, cell, "a", "Angle error over time");
+    let (y, _) = title(canvas, cell, "a", "Tracking error of the angle over time");
     let keys = [
         Key::new("median", Mark::Line(1.8), palette::BLUE.toward(palette::INK, 0.4)),
         Key::new("50 %", Mark::Patch, palette::BLUE.faded(0.65)),
@@ -80,7 +80,7 @@ fn draw_distribution(canvas: &mut Canvas<'_>, cell: Rect, figure: &EnvelopeFigur
     let ends = || sorted.iter().flat_map(|errors| errors.first().into_iter().chain(errors.last()));
     let lowest = ends().chain(figure.paper_rad.iter().flatten()).copied().fold(f64::MAX, f64::min);
     let highest = ends().chain(figure.paper_rad.iter().flatten()).copied().fold(f64::MIN, f64::max);
-    let x = Axis::logarithmic("error of a lift (mrad)", 0.9e3 * lowest, 1.1e3 * highest);
+    let x = Axis::logarithmic("tracking error (mrad)", 0.9e3 * lowest, 1.1e3 * highest);
     let panel = Panel::new(cell, x, Axis::exact("share of the trials (%)", 0.0, 100.0, 5), 20.0);
     panel.draw_frame(canvas);
     panel.level(canvas, 95.0, palette::SILVER, 1.2);
@@ -100,7 +100,7 @@ fn draw_distribution(canvas: &mut Canvas<'_>, cell: Rect, figure: &EnvelopeFigur
         let at = (x - 8.0, panel.frame.bottom - 14.0);
         canvas.upward(&format!("paper's {name}"), at, Anchor::Start, 12.5, color.toward(palette::INK, 0.3));
     }
-    let (y, _) = title(canvas, cell, "b", "Errors of whole lifts");
+    let (y, _) = title(canvas, cell, "b", "Tracking error of whole lifts");
     let keys = ERRORS.map(|(name, color)| Key::new(name, Mark::Line(2.0), color));
     legend(canvas, &keys, panel.frame.right, y);
 }

@@ -37,9 +37,9 @@ pub enum FigureError {
     /// A library that turns SVG into something else gave up.
     #[error("cannot turn the figure into {format}: {reason}; write SVG")]
     Conversion {
-        /// What it was to become.
+        /// The format asked for.
         format: &'static str,
-        /// What the library said.
+        /// Message of the library.
         reason: String,
     },
 }

@@ -16,7 +16,7 @@ pub struct SignatureFigure {
 /// One panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SignaturePanel {
-    /// What is seen.
+    /// Title of the panel.
     pub title: String,
     /// Title of the horizontal axis, with unit.
     pub x_label: String,
@@ -83,7 +83,8 @@ fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
     let axes = Panel::new(
         cell.inset(0.0, 18.0, 0.0, 0.0),
         x_axis(panel, &values, x),
-        Axis::linear(&*panel.y_label, y.0, y.1, 5),
+        // A peak that touches the frame would look cut off.
+        Axis::linear(&*panel.y_label, y.0 - 0.04 * (y.1 - y.0), y.1 + 0.04 * (y.1 - y.0), 5),
         18.0,
     );
     axes.draw_frame(canvas);
@@ -95,7 +96,7 @@ fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
     let alone = panel.series.len() == 1;
     let colors = COLORS.iter().cycle().skip(usize::from(alone));
     for (index, (line, color)) in panel.series.iter().zip(colors).enumerate() {
-        // What is expected is broad and pale below what the effect does, so that both are seen where they coincide.
+        // The expected line is broad and pale below that of the effect, so that both are seen where they coincide.
         let (color, width) = match index {
             0 if alone => (color.faded(0.75), 1.1),
             0 => (color.faded(0.3), 5.0),
@@ -113,6 +114,10 @@ fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
             keys.push(Key::new(line.name.clone(), Mark::Dot, color));
             continue;
         }
+        if is_count(&values) {
+            ranges(canvas, &axes, &values, color);
+            continue;
+        }
         for run in values.chunk_by(|a, b| (a.0 - b.0).abs() < far) {
             let ys: Vec<f64> = run.iter().map(|(_, y)| *y).collect();
             let within = |row: usize| (run[row].0.max(axes.x.from), run[row].1);
@@ -126,6 +131,25 @@ fn draw(canvas: &mut Canvas<'_>, cell: Rect, panel: &SignaturePanel) {
     }
 }
 
+/// Whether the horizontal counts, as cycles do: few whole numbers, each with many points.
+fn is_count(values: &[(f64, f64)]) -> bool {
+    let mut counts: Vec<f64> = values.iter().map(|(x, _)| *x).collect();
+    counts.dedup();
+    values.iter().all(|(x, _)| x.fract() == 0.0) && counts.len() <= 40 && values.len() >= 10 * counts.len()
+}
+
+/// Over each whole number a bar from the lowest to the highest value, and a dot at the mean.
+fn ranges(canvas: &mut Canvas<'_>, axes: &Panel, values: &[(f64, f64)], color: Color) {
+    for run in values.chunk_by(|a, b| a.0 == b.0) {
+        let ys = || run.iter().map(|(_, y)| *y);
+        let (low, high) = (ys().fold(f64::INFINITY, f64::min), ys().fold(f64::NEG_INFINITY, f64::max));
+        axes.line(canvas, [(run[0].0, low), (run[0].0, high)], color.faded(0.35), 9.0);
+        canvas.dot(axes.at(run[0].0, ys().sum::<f64>() / run.len() as f64), 4.0, color);
+    }
+    let keys = [Key::new("range", Mark::Patch, color.faded(0.35)), Key::new("mean", Mark::Dot, color)];
+    legend(canvas, &keys, axes.frame.right, axes.frame.top - 18.0);
+}
+
 /// A logarithmic axis where most of what is to be seen lies close to zero, as it does right after a reversal.
 fn x_axis(panel: &SignaturePanel, values: &[f64], (lowest, highest): (f64, f64)) -> Axis {
     let positive: Vec<f64> = values.iter().copied().filter(|value| *value > 0.0).collect();
@@ -133,7 +157,9 @@ fn x_axis(panel: &SignaturePanel, values: &[f64], (lowest, highest): (f64, f64))
     if lowest >= 0.0 && panel.series.len() == 1 && middle < 0.15 * highest && highest > 20.0 * low {
         Axis::logarithmic(&*panel.x_label, low.max(1e-4 * highest), highest)
     } else {
-        Axis::linear(&*panel.x_label, lowest, highest, 5)
+        let counts = panel.series.iter().all(|line| is_count(&points(line).collect::<Vec<_>>()));
+        let margin = if counts { 0.5 } else { 0.0 };
+        Axis::linear(&*panel.x_label, lowest - margin, highest + margin, 5)
     }
 }
 

@@ -113,10 +113,10 @@ impl Table {
     }
 }
 
-/// Whether a cell starts like a number: `1.05 ± 0.01`, `(2.5 ± 0.1)e9`, `152 kPa`.
+/// Whether a cell starts like a number: `1.05 ± 0.01`, `(2.5 ± 0.1)e9`, `152 kPa`, `0, at its bound`.
 fn is_number(cell: &str) -> bool {
     let unsigned = cell.trim_start_matches(['(', '-', '−', '+', '<', '>', ' ']);
-    let first_word = unsigned.split([' ', ')']).next().unwrap_or("").trim_end_matches('%');
+    let first_word = unsigned.split([' ', ')']).next().unwrap_or("").trim_end_matches(['%', ',']);
     unsigned.starts_with(|character: char| character.is_ascii_digit())
         && first_word.chars().all(|character| character.is_ascii_digit() || "+-−.e⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(character))
 }
@@ -169,7 +169,7 @@ mod tests {
     fn words_that_begin_with_a_digit_are_no_numbers() {
         assert!(!is_number("2nd"));
         assert!(!is_number("log-3"));
-        assert!(is_number("95 %") && is_number("1.6e-7") && is_number("−3"));
+        assert!(is_number("95 %") && is_number("1.6e-7") && is_number("−3") && is_number("0, at its bound"));
     }
 
     #[test]

@@ -29,8 +29,8 @@ fn six_panels_that_say_different_things() {
     for text in [
         "Lift of &lt;5 kg&gt;",
         "Angle of the elbows",
-        "Error of the angle",
-        "Error of the velocity",
+        "Tracking error, angle",
+        "Tracking error, velocity",
         "Angular acceleration",
         "Muscle pressure",
         "Muscle tension",

@@ -1,4 +1,4 @@
-//! What a controller does not know, and lifts that are rejected.
+//! Errors hidden from a controller, and lifts that are rejected.
 
 use std::path::Path;
 use std::process::Command;
@@ -70,7 +70,7 @@ fn an_effect_that_the_catalogue_does_not_have_is_refused() {
     assert!(text.contains("effect.json: effect \"gearbox\" is unknown; the nearest are"), "{text}");
 }
 
-/// What a lift is rejected for, one line for each arm and trouble; its track is there to look at.
+/// Reasons for which a lift is rejected, one line for each arm and trouble; its track is there to look at.
 fn rejected(changes: &[(&str, &str)]) -> String {
     let folder = folder(changes);
     let output = run(folder.path(), &["--out", "track.csv"]);

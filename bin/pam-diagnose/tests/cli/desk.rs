@@ -92,7 +92,7 @@ impl Desk {
         read_recording(&self.path(name), &ReadOptions::default()).unwrap()
     }
 
-    /// What pam-identify finds.
+    /// The model of pam-identify.
     pub(crate) fn identified(&self) -> ModelArtifact {
         self.identified_from(&FITTED)
     }

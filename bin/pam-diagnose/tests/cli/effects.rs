@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use crate::desk::{Desk, HELD, LOGS, MODEL_SCHEMA, SCHEMA};
 
-/// What the programs behind the diagnosis predict of a held-out recording, root mean square of the residual in N.
+/// Residual of the programs after the diagnosis on a held-out recording, root mean square in N.
 fn predicted_rmse_n(desk: &Desk, model: &ModelArtifact) -> f64 {
     let prepared = pam_identification::predict::prepare(desk.recording("multisine.csv"), model).unwrap();
     let augmented = model.augmented_model().elsewhere();

@@ -7,7 +7,7 @@ use pam_core::artifact::{InverseArtifact, ModelArtifact};
 use pam_core::effects::Effect;
 use pam_inverse_model::InverseNetwork;
 
-/// What a translation may be off, in N.
+/// Largest error of a translation, in N.
 const TOLERANCE_N: f64 = 1e-9;
 
 /// Compiles the program beside a header, warnings being errors.
@@ -274,7 +274,7 @@ fn with_a_rest_after_a_gap(text: &str) -> String {
     text.to_owned() + &rows.collect::<String>()
 }
 
-/// What a script prints, run beside the module.
+/// Output of a script, run beside the module.
 fn run_python(desk: &Desk, python: &std::path::Path, script: &str) -> String {
     // One thread: the matrices are small, and the machine may be busy.
     let output = desk

@@ -151,7 +151,7 @@ fn mujoco_pulls_as_the_model_does() {
     };
     let (rms_n, most_n) = (before("N", 0), before("N", 1));
     let [found_rms_n, found_most_n, damped_n, lag] = numbers[..] else { panic!("{said}") };
-    // What the scene says of itself, to the decimal that it says.
+    // Error that the scene states, to the decimal stated.
     assert!(found_rms_n <= 1.5 * rms_n + 0.1 && found_most_n <= most_n + 0.1, "{said} {rms_n} {most_n}");
     assert!(rms_n < 5.0, "{rms_n}");
     // Damping is exact, and a lag of the pressure is the same filter.

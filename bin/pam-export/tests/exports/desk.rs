@@ -42,7 +42,7 @@ impl Desk {
         std::fs::write(self.path().join(name), content).unwrap();
     }
 
-    /// What a file holds.
+    /// Content of a file.
     pub(crate) fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.path().join(name)).unwrap()
     }

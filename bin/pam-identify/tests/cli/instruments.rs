@@ -147,7 +147,7 @@ fn a_channels_file_that_is_wrong_gets_one_line_with_its_place() {
         "error: good.csv: bench.toml [pressure] names column \"ai0\", which the file lacks; it has time_s, pressure_kPa, \
          length_mm, force_N"
     );
-    // What the command line says wins.
+    // The command line wins.
     let output = bench.run("good.csv --channels bench.toml --map pressure_kPa=pressure_kPa --muscle m.toml --check");
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(

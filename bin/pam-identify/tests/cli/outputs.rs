@@ -1,4 +1,4 @@
-//! What is written, and where it goes.
+//! Outputs, and where they go.
 
 use crate::bench::{Bench, SCHEMA, TAIL, shipped};
 

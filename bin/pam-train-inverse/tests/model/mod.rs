@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-/// What is wrong with the model.
+/// Fault of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Change {
     /// Nothing.

@@ -72,7 +72,7 @@ pub(super) struct Unturned {
     carried: Bounds,
     /// Where the pressure moves friction while the length rests.
     pushed: Vec<Range<usize>>,
-    /// What friction turns over along, in m; empty where it takes no travel to.
+    /// Travels along which friction turns over, in m; empty where it takes none.
     path: Vec<f64>,
     /// Rows within which a turn lies.
     reach: usize,

@@ -25,11 +25,11 @@ pub struct Term {
     pub shape: Vec<f64>,
     /// Values of [`Effect::amplitudes`].
     pub amplitudes: Vec<f64>,
-    /// What the muscle has been through.
+    /// History of the muscle.
     pub past: Past,
 }
 
-/// What a muscle has been through before a recording, as [`Effect::keeps`] lists it; nothing by default.
+/// History of a muscle before a recording, as [`Effect::keeps`] lists it; nothing by default.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Past {
     /// Before each of the recordings that a model was fitted to; empty where nothing was, or where that is not known.
@@ -73,7 +73,7 @@ pub struct AugmentedModel {
     slopes: bool,
 }
 
-/// What the terms remember.
+/// Memory of the terms.
 pub struct AugmentedMemory {
     /// One for each term.
     memories: Vec<Box<dyn Memory>>,
@@ -126,7 +126,7 @@ impl AugmentedModel {
         Self { base, ..self.clone() }
     }
 
-    /// What comes on top of it.
+    /// Force added to it.
     pub fn terms(&self) -> &[Term] {
         &self.terms
     }

@@ -51,7 +51,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &ForceStep,
 ];
 
-/// What a model may carry beside eq. 11 that has no name in physics; a diagnosis never names it.
+/// Parts that a model may carry beside eq. 11 without a name in physics; a diagnosis never names it.
 pub static NAMELESS: &[&dyn Effect] = &[&StaticMap];
 
 /// The effect with an id of the catalogue, or of what has no name.

@@ -74,7 +74,7 @@ pub enum Role {
     Reads,
 }
 
-/// What an effect belongs to; a simulation of the muscle takes the muscle's alone.
+/// Owner of an effect; a simulation of the muscle takes the muscle's alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// A sensor, its wiring or its clock.
@@ -124,7 +124,7 @@ pub struct Kept {
     pub fresh: f64,
 }
 
-/// What the recordings cover, for grids that depend on it; SI.
+/// Ranges that the recordings cover, for grids that depend on them; SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
     /// Lowest and highest contraction ratio.
@@ -138,7 +138,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// What `instants` cover.
+    /// Ranges that `instants` cover.
     pub fn of<'a>(instants: impl Iterator<Item = &'a Instant>) -> Self {
         const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
         let widened = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
@@ -155,13 +155,13 @@ impl Seen {
 
 /// An effect of the catalogue.
 pub trait Effect: Sync {
-    /// What a person should know of it.
+    /// Its documentation.
     fn page(&self) -> &'static Page;
 
     /// Where it acts.
     fn role(&self) -> Role;
 
-    /// What it belongs to.
+    /// Its owner.
     fn kind(&self) -> Kind;
 
     /// Parameters in which the force is nonlinear.
@@ -217,7 +217,7 @@ pub trait Effect: Sync {
         false
     }
 
-    /// What its memory keeps for good, in the order of [`Memory::past`].
+    /// Values that its memory keeps for good, in the order of [`Memory::past`].
     fn keeps(&self) -> &'static [Kept] {
         &[]
     }
@@ -253,7 +253,7 @@ impl fmt::Debug for dyn Effect {
     }
 }
 
-/// What an effect remembers from moment to moment.
+/// State of an effect from moment to moment.
 ///
 /// At the first moment of a recording a memory is settled. A gap (`step_s == 0`) is crossed: what fades with time has gone on,
 /// what slides has come straight from where it was.
@@ -269,7 +269,7 @@ pub trait Memory: Send {
     /// Changes pressure or length from what the channels say to what the muscle sees.
     fn sees(&mut self, _now: &mut Moment) {}
 
-    /// What stands in the place of the direction in the friction of eq. 11, in [-1, 1] as a rule.
+    /// Replacement of the direction in the friction of eq. 11, in [-1, 1] as a rule.
     fn slides(&mut self, now: &Moment) -> f64 {
         now.direction
     }
@@ -277,7 +277,7 @@ pub trait Memory: Send {
     /// Fills in the force per unit of each amplitude.
     fn pulls(&mut self, _now: &Moment, _base: &Base, _columns: &mut [f64]) {}
 
-    /// What the load cell reads of a force, in N.
+    /// Reading of the load cell for a force, in N.
     fn reads(&mut self, force_n: f64) -> f64 {
         force_n
     }

@@ -43,7 +43,7 @@ pub struct Moment {
     pub warmth_k: f64,
 }
 
-/// What eq. 11 says at the same instant, at the pressure and length that the muscle sees.
+/// Force of eq. 11 at the same instant, at the pressure and length that the muscle sees.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Base {
     /// Gas on the braid, in N.
@@ -102,7 +102,7 @@ impl Moment {
 }
 
 impl Base {
-    /// What `model` says at a gauge pressure and a length.
+    /// Force of `model` at a gauge pressure and a length.
     pub fn of(model: &ForceModel, pressure_pa: f64, length_m: f64) -> Self {
         let static_n = |pressure_pa, length_m| model.force_n(pressure_pa, length_m, 0.0);
         let base = Self::from_terms(model, pressure_pa, length_m, &model.terms(pressure_pa, length_m, 0.0));
@@ -168,7 +168,7 @@ pub(super) mod tests {
         }
     }
 
-    /// What eq. 11 says of the nominal muscle there, nearly.
+    /// Force of eq. 11 of the nominal muscle there, nearly.
     pub(in super::super) fn base() -> Base {
         Base {
             gas_n: 461.0,

@@ -1,4 +1,4 @@
-//! What a person should know of an effect.
+//! Documentation of an effect.
 
 use crate::artifact::diagnosis::Coordinate;
 
@@ -9,7 +9,7 @@ pub struct Page {
     pub id: &'static str,
     /// Name in words, as in "the muscle shows …".
     pub name: &'static str,
-    /// What happens, in two or three sentences.
+    /// The mechanism, in two or three sentences.
     pub summary: &'static str,
     /// The equation that is fitted, in plain text.
     pub equation: &'static str,
@@ -19,7 +19,7 @@ pub struct Page {
     pub validity: &'static str,
     /// Where it comes from.
     pub source: &'static str,
-    /// What it does to a residual.
+    /// Its mark in a residual.
     pub signature: &'static str,
     /// Ids of the effects it is confused with, each with the reason and the bench test that separates the two.
     pub confused_with: &'static [Confusion],
@@ -49,6 +49,6 @@ pub struct Confusion {
     pub id: &'static str,
     /// Why they look alike.
     pub because: &'static str,
-    /// What tells them apart on a bench.
+    /// The test on a bench that distinguishes them.
     pub test: &'static str,
 }

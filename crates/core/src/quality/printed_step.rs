@@ -91,7 +91,7 @@ mod tests {
     use super::*;
     use rand::{RngExt, SeedableRng};
 
-    /// What a converter with steps of `step` prints in multiples of `unit`, of values between 0 and 1000.
+    /// Values that a converter with steps of `step` prints in multiples of `unit`, of values between 0 and 1000.
     fn printed(step: f64, unit: f64, n: usize) -> Vec<f64> {
         let mut generator = rand_pcg::Pcg64::seed_from_u64(11);
         let mut values: Vec<f64> = (0..n)

@@ -21,7 +21,7 @@ pub struct ReadError {
     pub path: PathBuf,
     /// Where in the file, unless it concerns the whole.
     pub place: Option<Place>,
-    /// What is wrong there.
+    /// The fault there.
     pub kind: Box<ReadErrorKind>,
 }
 
@@ -34,14 +34,14 @@ pub struct Place {
     pub column: u64,
 }
 
-/// What is wrong with a recording.
+/// Faults of a recording.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadErrorKind {
     /// There is no such file.
     #[error("{remedy}")]
     NotFound {
-        /// What to do: the name that was probably meant, if there is one.
+        /// The remedy: the name that was probably meant, if there is one.
         remedy: String,
     },
     /// The file may not be read.
@@ -53,13 +53,13 @@ pub enum ReadErrorKind {
     /// The system failed to read on.
     #[error("cannot be read: {source}; check the disk or copy the file anew")]
     Unreadable {
-        /// What the system said.
+        /// Message of the system.
         source: io::Error,
     },
     /// Compressed data that ends early or is damaged.
     #[error("the compressed data is damaged or cut off ({source}); copy the file anew, or test it with gzip -t")]
     DamagedGzip {
-        /// What the decompressor said.
+        /// Message of the decompressor.
         source: io::Error,
     },
     /// The temporary file for large recordings cannot be written.
@@ -71,7 +71,7 @@ pub enum ReadErrorKind {
     Spill {
         /// Where the file should have gone.
         directory: PathBuf,
-        /// What the system said.
+        /// Message of the system.
         source: io::Error,
     },
     /// Text in UTF-16.
@@ -80,17 +80,17 @@ pub enum ReadErrorKind {
     /// Not text.
     #[error("this is {found}, not text; {remedy}")]
     Binary {
-        /// What it seems to be.
+        /// The format that it seems to have.
         found: &'static str,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
     /// A format of recordings that is known, and not read.
     #[error("this is {found}, which is not read; {remedy}")]
     NotRead {
-        /// What it is.
+        /// Its kind.
         found: &'static str,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
     /// A file of LabVIEW whose header does not end.
@@ -103,13 +103,13 @@ pub enum ReadErrorKind {
         lvm_as_csv(found)
     )]
     LvmTime {
-        /// What the file says of it.
+        /// The file's own statement about it.
         found: String,
     },
     /// A MATLAB file that contradicts itself or ends early.
     #[error("the MATLAB file is damaged or cut off ({reason}); copy it anew, or save it anew with save -v7")]
     DamagedMat {
-        /// What is wrong.
+        /// The fault.
         reason: &'static str,
     },
     /// Compressed data that grows beyond what a recording can be.
@@ -186,7 +186,7 @@ pub enum ReadErrorKind {
     UnknownUnit {
         /// Name found.
         name: String,
-        /// What follows the quantity.
+        /// Text after the quantity.
         unit: String,
         /// The quantity.
         quantity: Quantity,
@@ -281,7 +281,7 @@ pub enum ReadErrorKind {
     /// A row that cannot be used.
     #[error("{fault}; {}", fault.remedy())]
     Row {
-        /// What is wrong with it.
+        /// Its fault.
         fault: RowFault,
     },
     /// Fewer rows than are needed.

@@ -6,7 +6,7 @@ use super::source::ByteSource;
 /// Longest line that is read, in bytes; a thousand columns of twenty digits take a fiftieth of it.
 pub(crate) const MAX_LINE_BYTES: usize = 1 << 20;
 
-/// What the stream gives next.
+/// Next item of the stream.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Lines<'a> {
     /// One or more lines, each with its line feed (the last line of the file is given one).

@@ -13,7 +13,7 @@ const END: &[u8] = b"***End_of_Header***";
 const TIME: &str = "X_Value";
 const REMARK: &str = "Comment";
 
-/// What stands above the table.
+/// Text above the table.
 #[derive(Debug, PartialEq)]
 pub(super) struct LvmHeader {
     /// Bytes and lines before the row of names.

@@ -58,7 +58,7 @@ pub struct Recording {
     pub samples: Samples,
     /// Stretches without a gap in time, as ranges of rows; together they cover all rows.
     pub segments: Vec<Range<usize>>,
-    /// What was repaired or left out while reading.
+    /// Repairs and exclusions while reading.
     pub repairs: Repairs,
     /// Names of the columns that are kept out of the way.
     pub ignored_columns: Vec<String>,

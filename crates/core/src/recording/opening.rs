@@ -9,7 +9,7 @@ use super::read::{ReadOptions, Refusal, whole};
 use super::sniff::{Hints, Layout};
 use super::units::{ISO, Name, Quantity, bare_symbol};
 
-/// What the line turned out to be.
+/// Kind of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Opened {
     /// A header, or nothing that counts.
@@ -60,7 +60,7 @@ pub(super) fn plan(
     Ok((plan, named.opened))
 }
 
-/// What the first look at a file has shown.
+/// Findings of the first look at a file.
 #[derive(Debug)]
 pub(super) struct Seen {
     pub(super) layout: Layout,

@@ -1,4 +1,4 @@
-//! What a command line says about the columns of a recording.
+//! Options of a command line about the columns of a recording.
 
 use std::str::FromStr;
 
@@ -29,7 +29,7 @@ pub struct ColumnMap {
 pub struct FixedChannel {
     /// Name as written.
     pub name: String,
-    /// What it measures.
+    /// Its quantity.
     pub quantity: Quantity,
     /// Its value, in SI.
     pub value: f64,
@@ -78,9 +78,9 @@ pub enum OptionSyntaxError {
     /// No equals sign, or nothing on one side of it.
     #[error("\"{text}\" is not of the form NAME=…; expected for example {example}")]
     NotAnAssignment {
-        /// What was given.
+        /// The text as given.
         text: String,
-        /// What it should look like.
+        /// The form expected.
         example: &'static str,
     },
     /// The left side names no quantity.
@@ -89,27 +89,27 @@ pub enum OptionSyntaxError {
          (time, pressure, length, force or temperature)"
     )]
     UnknownTarget {
-        /// What was given.
+        /// The text as given.
         name: String,
-        /// What it should look like, or the name that was probably meant.
+        /// The form expected, or the name that was probably meant.
         example: String,
     },
     /// The left side names a quantity without a unit that is known.
     #[error("\"{name}\" has no unit that is known; write {quantity}_UNIT with {}, for example {example}", quantity.unit_list())]
     UnknownUnit {
-        /// What was given.
+        /// The text as given.
         name: String,
         /// The quantity it names.
         quantity: Quantity,
-        /// What it should look like.
+        /// The form expected.
         example: String,
     },
     /// A constant that is not a number.
     #[error("\"{text}\" is not a finite number; expected for example {example}")]
     NotANumber {
-        /// What was given.
+        /// The text as given.
         text: String,
-        /// What it should look like.
+        /// The form expected.
         example: &'static str,
     },
     /// Time as a constant.
@@ -120,12 +120,12 @@ pub enum OptionSyntaxError {
     NotLinear {
         /// The right side.
         text: String,
-        /// What is wrong with it.
+        /// Its fault.
         fault: ExpressionFault,
     },
 }
 
-/// What keeps an expression from being linear in one column.
+/// Reason why an expression is not linear in one column.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ExpressionFault {
     /// A number, a column or an operator missing.

@@ -152,7 +152,7 @@ fn pieces(text: &[u8]) -> Vec<&[u8]> {
     pieces
 }
 
-/// What each line of `text` holds.
+/// Kind of each line of `text`.
 fn lines_of(parser: &mut RowParser, text: &[u8]) -> Vec<Line> {
     // As many as there are lines as short as the first.
     let first = memchr::memchr(b'\n', text).map_or(text.len(), |end| end + 1);

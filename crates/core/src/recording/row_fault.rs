@@ -1,8 +1,8 @@
-//! What can be wrong with one row.
+//! Faults of one row.
 
 use super::wording::counted;
 
-/// What is wrong with one row.
+/// Fault of one row.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RowFault {
@@ -78,7 +78,7 @@ pub enum RowFault {
 }
 
 impl RowFault {
-    /// What to do about it.
+    /// Its remedy.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::ClockRunsBack { .. } => {

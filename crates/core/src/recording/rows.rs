@@ -17,7 +17,7 @@ const LARGEST: f64 = 1e12;
 /// Channels of a row in SI, in the order of [`super::Quantity::ALL`]; zero where there is none.
 pub(crate) type Channels = [f64; MAX_COLUMNS];
 
-/// What a line holds.
+/// Content of a line.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Line {
     Row(Channels),

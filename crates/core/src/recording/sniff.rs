@@ -44,13 +44,13 @@ const NOT_READ: [(&[u8], &str, &str); 4] = [
     ),
 ];
 
-/// What to do about HDF5, MATLAB's own included: vectors of equal length become columns.
+/// Remedy for HDF5, MATLAB's own included: vectors of equal length become columns.
 pub(super) const HDF5_AS_CSV: &str = "write it as CSV: python3 -c 'import h5py, pandas, sys; d = {}; \
      h5py.File(sys.argv[1]).visititems(lambda n, o: d.update({n: pandas.Series(o[()].ravel())}) \
      if isinstance(o, h5py.Dataset) and o.dtype.kind in \"fiu\" and o.size == max(o.shape or [0]) else None); \
      pandas.DataFrame(d).to_csv(sys.argv[2], index=False)' log.h5 log.csv";
 
-/// What to do about TDMS: time is that of the waveforms, or else a channel of its own.
+/// Remedy for TDMS: time is that of the waveforms, or else a channel of its own.
 const TDMS_AS_CSV: &str = "write it as CSV: python3 -c 'import nptdms, sys; \
      f = nptdms.TdmsFile.read(sys.argv[1]); \
      w = all(\"wf_increment\" in c.properties for g in f.groups() for c in g.channels()); d = f.as_dataframe(time_index=w); \
@@ -100,7 +100,7 @@ pub(crate) struct Layout {
     pub(crate) space_separated: bool,
 }
 
-/// What the first rows below the header tell of its columns.
+/// Findings of the first rows below the header about its columns.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Hints {
     /// A row of units under the header, field by field.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What a column of a recording measures.
+/// Quantity of a column of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
     /// Time since any origin.
@@ -160,7 +160,7 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// What the name of a column says.
+/// Meaning of a column's name.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Name {
     /// A right name.

@@ -43,7 +43,7 @@ pub(super) fn too_few_remedy(found: usize, needed: usize, skipped: u64) -> Strin
     }
 }
 
-/// What to do about a missing quantity.
+/// Remedy for a missing quantity.
 pub(super) fn missing_remedy(quantity: Quantity, hint: Option<&str>) -> String {
     let example = quantity.example();
     match (hint, quantity) {
@@ -58,7 +58,7 @@ pub(super) fn missing_remedy(quantity: Quantity, hint: Option<&str>) -> String {
     }
 }
 
-/// What converts a file of LabVIEW that has no column of time, but a constant rate.
+/// Conversion of a file of LabVIEW that has no column of time, but a constant rate.
 pub(super) fn lvm_as_csv(x_columns: &str) -> &'static str {
     match x_columns {
         "No" => {
@@ -77,7 +77,7 @@ pub(super) fn nearest_remedy(nearest: Option<&str>, columns: &[String]) -> Strin
     }
 }
 
-/// What to do about two columns for one quantity; `--map` cannot tell equal names apart.
+/// Remedy for two columns for one quantity; `--map` cannot tell equal names apart.
 pub(super) fn twice_remedy(first: &str, second: &str) -> String {
     if first == second {
         "rename one of them in the header".to_owned()

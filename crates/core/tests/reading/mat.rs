@@ -12,7 +12,7 @@ const VECTORS: &[u8] = include_bytes!("data/vectors.mat");
 const SIMULINK: &[u8] = include_bytes!("data/simulink.mat");
 const DSPACE: &[u8] = include_bytes!("data/dspace.mat");
 
-/// What all three hold.
+/// Common content of all three.
 fn is_the_lift(recording: &Recording) {
     let rows = rows(recording);
     assert_eq!(rows.len(), 12);

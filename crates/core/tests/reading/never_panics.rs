@@ -58,7 +58,7 @@ fn log() -> impl Strategy<Value = Vec<u8>> {
     )
 }
 
-/// What loggers, editors and serial links do to a file.
+/// Damage that loggers, editors and serial links do to a file.
 fn mutation() -> impl Strategy<Value = (prop::sample::Index, Vec<u8>, usize)> {
     let pieces =
         ["\"", ",", ";", "\n", "\r", "\0", "nan", "-", "1e999", "#", "\u{feff}", "time_s", "99999999", "0", " "];

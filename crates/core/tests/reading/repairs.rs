@@ -1,4 +1,4 @@
-//! What is repaired, what is dropped on request, and how the notes tell.
+//! Repairs, rows dropped on request, and notes about both.
 
 use insta::assert_snapshot;
 use pam_core::recording::ReadOptions;

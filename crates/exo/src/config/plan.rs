@@ -54,7 +54,7 @@ pub struct LiftPlan {
     pub control: ControlSettings,
     /// Angle error at which a lift is given up, in rad.
     pub diverged_rad: f64,
-    /// What the trials of a robustness study vary.
+    /// Variations of the trials of a robustness study.
     pub spreads: Spreads,
 }
 

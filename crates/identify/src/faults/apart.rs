@@ -27,7 +27,7 @@ const ALIKE: f64 = 1.5;
 const SAID: usize = 3;
 /// Below the atmosphere by so much, no gauge in order reads, in Pa.
 const BELOW_ZERO_PA: f64 = -15e3;
-/// What is looked for: zero of a pressure in Pa, of a length in rest lengths, of a force in N; logarithm of gains.
+/// The fault looked for: zero of a pressure in Pa, of a length in rest lengths, of a force in N; logarithm of gains.
 const PRESSURE_ZERO_PA: f64 = 120e3;
 const LENGTH_ZERO: f64 = 0.05;
 const FORCE_ZERO_N: f64 = 100.0;
@@ -49,7 +49,7 @@ pub struct Apart {
 }
 
 impl Apart {
-    /// What to say of it.
+    /// Its message.
     pub fn words(&self) -> String {
         let said = self.readings.iter().take(SAID);
         let each: Vec<String> = said.map(|(path, reading)| format!("in {path} {}", reading.words())).collect();

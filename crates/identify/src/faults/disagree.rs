@@ -89,7 +89,7 @@ fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
     (values.len() >= LEAST_PLACES).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
-/// What two recordings say of one another.
+/// Comparison of two recordings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Compared {
     /// Median ratio of their mean forces.
@@ -176,7 +176,7 @@ pub fn find(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> 
     }))
 }
 
-/// What to say of recordings whose forces differ, but by no more than their loops allow: a note for each pair.
+/// Message about recordings whose forces differ, but by no more than their loops allow: a note for each pair.
 ///
 /// # Errors
 /// Where samples cannot be read back.

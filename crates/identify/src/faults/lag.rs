@@ -196,7 +196,7 @@ fn find_one(windows: &[Window], columns: &ForceColumns, shifted: Shifted, stride
     (lag_s.abs() > 1e-3).then_some(Lag { channel, force_later_s: lag_s, rmse_n: (middle, best.1) })
 }
 
-/// What free weights leave of every `stride`-th row, with the channel taken `lag_s` earlier.
+/// Residual that free weights leave of every `stride`-th row, with the channel taken `lag_s` earlier.
 fn unexplained_rmse_n(windows: &[Window], columns: &ForceColumns, shifted: Shifted, stride: usize, lag_s: f64) -> f64 {
     let width = N_COLUMNS + 1;
     let mut summary = Summary::new(N_COLUMNS);

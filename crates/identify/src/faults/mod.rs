@@ -120,7 +120,7 @@ pub enum Fault {
         longest_mm: f64,
         /// Rest length of the muscle file.
         rest_mm: f64,
-        /// What is impossible about it.
+        /// The impossibility.
         reason: &'static str,
     },
     /// Force falls as pressure rises.

@@ -1,6 +1,6 @@
 //! A recording whose noise alone hides what a model misses: a hum, a loose shield, a gauge that bubbles.
 //!
-//! What the sensors' noise leaves of a perfect model is subtracted wherever a model is judged, so that a recording with a hum of
+//! The noise floor of the sensors is subtracted wherever a model is judged, so that a recording with a hum of
 //! fifty newtons is followed as well as can be, by every model. That is true, and worth nothing unless it is said.
 
 use pam_core::force::ForceModel;
@@ -24,7 +24,7 @@ pub fn is_noise(floor_n: f64, left_n: f64) -> bool {
     left_n >= LEAVES * floor_n
 }
 
-/// What to say of recordings that are much noisier than `own_n`, which the sensors leave of the recordings of the model, or than
+/// Message about recordings that are much noisier than `own_n`, which the sensors leave of the recordings of the model, or than
 /// the quietest of them where that is not known: a word for each.
 ///
 /// # Errors

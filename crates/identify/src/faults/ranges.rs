@@ -46,7 +46,7 @@ fn pressure(gate: &Gated, muscle: &Muscle) -> Option<Fault> {
     let peak_pa = channel.highest.max(-channel.lowest);
     let reached = || format!("{:.3} kPa", peak_pa * 1e-3);
     if peak_pa > HIGHEST_PRESSURE_PA {
-        // What would bring the peak to a few bar.
+        // A unit that would bring the peak to a few bar.
         let (factor, guess) = match peak_pa / 3e5 {
             ratio if ratio < 300.0 => (100.0, "kPa under a header that says bar is a factor of 100"),
             ratio if ratio < 5000.0 => (1000.0, "kPa under a header that says MPa, or Pa as kPa, is a factor of 1000"),

@@ -1,4 +1,4 @@
-//! What one instrument would have to read wrong for a model to follow a recording that it misses.
+//! The error of one instrument with which a model would follow a recording that it misses.
 //!
 //! A model is known, so that each fault of an instrument is one number: the hypothesis is that the recorded channel `y` is not
 //! the true one `x`, and the number is the one that leaves least of the force.
@@ -53,7 +53,7 @@ const LARGEST_LAG_S: f64 = 0.5;
 const POINTS: usize = 61;
 const HALVINGS: usize = 12;
 
-/// What is wrong with a channel.
+/// A channel's fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wrong {
     /// Times the true value.
@@ -71,7 +71,7 @@ pub enum Wrong {
 pub struct Reading {
     /// `force`, `pressure`, `length` or `time`.
     pub channel: &'static str,
-    /// What is wrong with it.
+    /// Its fault.
     pub wrong: Wrong,
     /// RMSE that it leaves, in N.
     pub left_n: f64,
@@ -115,7 +115,7 @@ pub fn is_missed(model: &ModelArtifact, rmse_n: f64, floor_n: f64) -> bool {
     rmse_n > MISSES * own_n(model).max(floor_n) && rmse_n > WORST * each.fold(0.0, f64::max)
 }
 
-/// What to say of a recording that `model`, with the effects and memories of `artifact`, misses by `rmse_n`; nothing where it
+/// Message about a recording that `model`, with the effects and memories of `artifact`, misses by `rmse_n`; nothing where it
 /// follows it as it followed its own.
 ///
 /// # Errors

@@ -34,7 +34,7 @@ const SURELY: f64 = 3.0;
 const CORRELATED: f64 = 25.0;
 /// Share of the force that the sum has to explain.
 const EXPLAINED: f64 = 0.8;
-/// What a bladder has, for the column `B`, in Pa.
+/// Range of a bladder, for the column `B`, in Pa.
 const BLADDER_PA: [f64; 2] = [118.4e3, 105.7e3];
 /// A vented muscle has no pressure; below this a gauge has its zero elsewhere, in Pa.
 const BELOW_ZERO_PA: f64 = -8e3;

@@ -25,7 +25,7 @@ const TIMES_EXPLAINED: f64 = 5.0;
 /// How steep the force of a muscle is at most, in units of its largest force over its range of pressure or of length.
 const STEEPEST: f64 = 3.0;
 
-/// What a straight line through `values` leaves: its rise over all of them, the standard deviation beside it and how often they
+/// Residual of a straight line through `values`: its rise over all of them, the standard deviation beside it and how often they
 /// cross it.
 fn beside_a_line(values: &[f64]) -> (f64, f64, usize) {
     let n = values.len() as f64;
@@ -48,7 +48,7 @@ fn beside_a_line(values: &[f64]) -> (f64, f64, usize) {
     (slope * (n - 1.0), (squares / (n - 2.0)).sqrt(), crossings)
 }
 
-/// What a channel explains of a force.
+/// Share of a force that a channel explains.
 struct Drive {
     /// By how much it may rise within a window, and scatter beside that.
     most: f64,
@@ -65,7 +65,7 @@ impl Drive {
         Some(Self { most, steepness: if range > 4.0 * most { STEEPEST * range_n / range } else { 0.0 } })
     }
 
-    /// What its values explain of a force in N, where it does not move by more than it may.
+    /// Share of a force in N that its values explain, where it does not move by more than it may.
     fn explains_n(&self, values: &[f64]) -> Option<f64> {
         let (rise, spread, _) = beside_a_line(values);
         (rise.abs() <= self.most && spread <= self.most).then_some(self.steepness * spread)
@@ -152,7 +152,7 @@ fn together(windows: &[Range<usize>]) -> Option<Range<usize>> {
     (windows.len() >= LEAST_WINDOWS).then(|| windows[0].start..windows[windows.len() - 1].end)
 }
 
-/// What to say of a recording that is shaken; nothing of one that is not.
+/// Message about a recording that is shaken; nothing of one that is not.
 ///
 /// # Errors
 /// Where samples cannot be read back.

@@ -186,7 +186,7 @@ pub fn rows(recording: &Recording, quality: &RecordingQuality) -> io::Result<Vec
     Ok(all(recording, quality)?.into_iter().map(|spike| spike.row).collect())
 }
 
-/// What to say of the spikes of a recording; nothing where it has none.
+/// Message about the spikes of a recording; nothing where it has none.
 ///
 /// # Errors
 /// Where samples cannot be read back.

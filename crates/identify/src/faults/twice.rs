@@ -26,7 +26,7 @@ pub fn check(estimation: &[Recording], holdout: &[Recording]) -> Result<(), Iden
     })
 }
 
-/// What to say of recordings of which a stretch stands in them once more: a word for each.
+/// Message about recordings of which a stretch stands in them once more: a word for each.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.

@@ -30,7 +30,7 @@ const WEATHER_PA: f64 = 15e3;
 /// Pressure, length, direction and force of samples that count.
 pub(super) type Sample = (f64, f64, f64, f64);
 
-/// What a shift of the pressure explains, in words; none where it explains little.
+/// Share that a shift of the pressure explains, in words; none where it explains little.
 ///
 /// # Errors
 /// Where samples cannot be read back.

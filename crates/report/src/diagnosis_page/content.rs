@@ -1,4 +1,4 @@
-//! What the page says, section by section.
+//! Content of the page, section by section.
 
 use super::{PageCoordinate, PageEmpirical, PageRecording};
 
@@ -7,11 +7,11 @@ use super::{PageCoordinate, PageEmpirical, PageRecording};
 pub struct DiagnosisPage {
     /// Title of the document, such as the muscle's name.
     pub title: String,
-    /// What is to be believed.
+    /// The verdict.
     pub verdict: PageVerdict,
     /// The verdict in one sentence.
     pub statement: String,
-    /// What a person should know before using the diagnosis.
+    /// Warnings to read before the diagnosis is used.
     pub warnings: Vec<String>,
     /// The model before it was refitted; none where that is not known.
     pub as_given: Option<PageGiven>,
@@ -27,24 +27,24 @@ pub struct DiagnosisPage {
     pub regions: Vec<PageRegion>,
     /// Effects that were left out, in order of evidence.
     pub effects: Vec<PageEffect>,
-    /// What models the part without a name.
+    /// Terms that model the part without a name.
     pub empirical: Option<PageEmpirical>,
     /// Whether the augmented model has a smooth static map.
     pub static_map: bool,
     /// Everything that was weighed.
     pub candidates: Vec<PageCandidate>,
-    /// What is still unknown.
+    /// Open questions.
     pub unknown: PageUnknown,
-    /// What to record next, where that would tell more.
+    /// The recording to make next, where that would tell more.
     pub next_experiment: Option<PageExperiment>,
-    /// What the recordings could tell apart at all.
+    /// Effects that the recordings can distinguish at all.
     pub isolability: Option<PageIsolability>,
     /// How the diagnosis came about.
     pub appendix: PageAppendix,
 }
 
 impl DiagnosisPage {
-    /// What was added to the model, in words; none where nothing was.
+    /// Additions to the model in words; none where there are none.
     pub(super) fn additions(&self) -> Option<&'static str> {
         match (self.effects.is_empty(), self.empirical.is_none()) {
             (true, true) => self.static_map.then_some("a smooth static map"),
@@ -115,7 +115,7 @@ pub struct PageEstimate {
     pub status: String,
 }
 
-/// What is to be believed.
+/// The verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PageVerdict {
     /// Model and recordings agree.
@@ -141,7 +141,7 @@ pub struct PageFit {
     pub rmse_all_before_n: f64,
     /// Base model and effects over all samples, in N.
     pub rmse_all_after_n: f64,
-    /// What noise leaves of any model, in N.
+    /// Noise floor of any model, in N.
     pub noise_floor_n: f64,
 }
 
@@ -169,9 +169,9 @@ pub struct PageEffect {
     pub id: String,
     /// Name in words.
     pub name: String,
-    /// What happens, in a few sentences.
+    /// The mechanism in a few sentences.
     pub summary: String,
-    /// What it does to a residual.
+    /// Its mark in a residual.
     pub signature: String,
     /// The equation that was fitted.
     pub equation: String,
@@ -189,7 +189,7 @@ pub struct PageEffect {
     pub alternatives: Vec<PageAlternative>,
     /// Effects that other recordings may not tell from it.
     pub look_alikes: Vec<PageAlternative>,
-    /// What would tell them apart, or confirm the effect.
+    /// The test that distinguishes them, or confirms the effect.
     pub separating_test: String,
 }
 
@@ -249,7 +249,7 @@ pub struct PageAlternative {
     pub name: String,
     /// Why the two look alike; may be empty.
     pub because: String,
-    /// What tells them apart; may be empty.
+    /// The test that distinguishes them; may be empty.
     pub test: String,
 }
 
@@ -264,11 +264,11 @@ pub struct PageCandidate {
     pub evidence: PageEvidence,
     /// Share of the mean square over blocks left out of the fit that it takes away alone, in [0, 1].
     pub explains: f64,
-    /// What became of it, in words.
+    /// Its outcome in words.
     pub outcome: String,
 }
 
-/// What is still unknown.
+/// Open questions.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PageUnknown {
     /// Where structure is left.
@@ -288,7 +288,7 @@ pub struct PageImplausible {
     pub unit: String,
     /// Lowest and highest plausible value.
     pub plausible: [f64; 2],
-    /// What usually stands behind it.
+    /// The usual cause.
     pub likely_cause: String,
 }
 
@@ -297,7 +297,7 @@ pub struct PageImplausible {
 pub struct PageExperiment {
     /// Protocol.
     pub protocol: String,
-    /// What it would decide between.
+    /// Hypotheses that it would decide between.
     pub separates: Vec<String>,
     /// How far apart it would drive them, in N.
     pub separation_n: f64,
@@ -305,7 +305,7 @@ pub struct PageExperiment {
     pub instruction: String,
 }
 
-/// What recordings can tell apart.
+/// Effects that recordings can distinguish.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PageIsolability {
     /// Catalogue ids.
@@ -336,7 +336,7 @@ pub struct PageAppendix {
 /// A file that went into a diagnosis.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PageInput {
-    /// What it was used as: `model`, `estimation`, `held out`.
+    /// Its use: `model`, `estimation`, `held out`.
     pub role: String,
     /// Path as given.
     pub path: String,

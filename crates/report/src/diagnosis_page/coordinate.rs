@@ -1,8 +1,8 @@
-//! What a residual is laid out over, in the units that people use.
+//! Coordinates of a residual, in the units that people use.
 
 use crate::number::significant;
 
-/// What a residual is laid out over.
+/// A coordinate of a residual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PageCoordinate {
     /// Time since the recording began.

@@ -1,4 +1,4 @@
-//! What models the part of a mismatch that has no name: each term with its equation, its curve, and how sure it is.
+//! Terms for the part of a mismatch that has no name: each with its equation, its curve, and how sure it is.
 
 use super::html::{equation, figure, heading, newtons, paragraph, percent, remark, table};
 use crate::number::engineering;
@@ -10,7 +10,7 @@ use crate::{FigureError, Table};
 pub struct PageEmpirical {
     /// The terms.
     pub terms: Vec<PageTerm>,
-    /// What is left without and with them, root mean square, in N.
+    /// Residual without and with them, root mean square, in N.
     pub left_n: [f64; 2],
     /// Whether that is of held-out recordings; of held-out blocks otherwise.
     pub of_holdout: bool,
@@ -19,13 +19,13 @@ pub struct PageEmpirical {
 /// A term without a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PageTerm {
-    /// What it does, in a sentence without its full stop.
+    /// Its action in a sentence without its full stop.
     pub words: String,
     /// Its equation.
     pub equation: String,
     /// Numbers that belong to the equation, each with its name, value and SI unit.
     pub numbers: Vec<(String, f64, String)>,
-    /// What the curve is a function of, with the unit that people use.
+    /// Argument of the curve, with the unit that people use.
     pub argument_label: String,
     /// Values of that, in this unit.
     pub argument: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct PageTerm {
     pub nearest: Vec<(String, String)>,
 }
 
-/// What is said of the terms; nothing where there are none.
+/// Sentences about the terms; nothing where there are none.
 ///
 /// # Errors
 /// [`FigureError`] if a curve has not as many values of each column.

@@ -1,6 +1,5 @@
 //! Sections at the end: improvement, what is unknown, the next recording, provenance.
 
-use super::fit_bars::fit_bars;
 use super::headline::share_explained;
 use super::loops::{Stretch, loops};
 use super::place::regions_table;
@@ -34,10 +33,6 @@ pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Strin
              see what the effects are worth on data that they have not seen.",
         ),
     };
-    if let Some(fit) = page.holdout {
-        let svg = fit_bars("Residual on held-out recordings", &[("held-out recordings", fit)], Some(additions))?;
-        html.push_str(&figure(&svg, "Residual on held-out recordings, before and after, against the noise floor."));
-    }
     if !page.base_parameters.is_empty() {
         html.push_str(&heading("Base parameters before and after"));
         html.push_str(&symbol_table(&base_parameters(&page.base_parameters)));
@@ -50,8 +45,8 @@ pub(super) fn gain(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Strin
         html.push_str(&heading("A loop before and after"));
         let which = if stretch.is_closed() { "The closed loop" } else { "The stretch" };
         let caption = format!(
-            "{which} that gains most: {}. On the right a parabola through the measured force is taken off all three, \
-             so that the loop opens.",
+            "{which} that shows the effects best: {}. On the right a parabola through the measured force is taken off all three, \
+             so that the loop opens; lines are running means.",
             stretch.words()
         );
         html.push_str(&figure(&loops(&stretch)?, &caption));

@@ -4,10 +4,12 @@ use super::PageFit;
 use crate::FigureError;
 use crate::page::html::newtons;
 use crate::page::style::{AFTER, BEFORE};
-use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, legend, palette};
+use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, legend_from, legend_width, palette};
 
 /// Height of a bar, in pixels.
 const BAR: f64 = 22.0;
+/// Width of the figure, in pixels: narrow enough to be read on a telephone.
+const WIDTH: f64 = 540.0;
 
 /// Draws a pair of bars for each entry of `fits`; one bar where nothing was added to the model.
 pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], additions: Option<&str>) -> Result<String, FigureError> {
@@ -16,10 +18,15 @@ pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], additions: Option<
     let height = 44.0 + group * fits.len() as f64 + 46.0;
     let largest = fits.iter().flat_map(|(_, fit)| [fit.rmse_before_n, fit.rmse_after_n, fit.noise_floor_n]);
     let largest = largest.filter(|value| value.is_finite()).fold(0.0, f64::max);
-    Canvas::document(900, height as u32, title, |canvas, sheet| {
+    let mut keys = vec![Key::new("base model, refitted", Mark::Patch, BEFORE)];
+    let with = additions.map(|additions| format!("with {additions}"));
+    keys.extend(with.as_deref().map(|with| Key::new(with, Mark::Patch, AFTER)));
+    keys.push(Key::new("noise floor", Mark::Dashes(1.8), palette::INK));
+    let width = WIDTH.max(legend_width(&keys) + 16.0);
+    Canvas::document(width as u32, height as u32, title, |canvas, sheet| {
         let panel = Panel {
-            frame: Rect { left: 190.0, top: 36.0, right: sheet.right - 90.0, bottom: height - 46.0 },
-            x: Axis::exact("residual, root mean square (N)", 0.0, 1.04 * largest, 8),
+            frame: Rect { left: 166.0, top: 36.0, right: sheet.right - 66.0, bottom: height - 46.0 },
+            x: Axis::exact("residual, root mean square (N)", 0.0, 1.04 * largest, 6),
             y: Axis::exact("", 0.0, 1.0, 1),
             upward_labels: false,
         };
@@ -30,7 +37,7 @@ pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], additions: Option<
         for (index, (name, fit)) in fits.iter().enumerate() {
             let top = panel.frame.top + group * index as f64;
             let middle = top + 0.5 * group;
-            canvas.text(name, (panel.frame.left - 14.0, middle), Anchor::End, 14.0, palette::INK);
+            canvas.text(name, (panel.frame.left - 12.0, middle), Anchor::End, 13.0, palette::INK);
             let mut bars = vec![(fit.rmse_before_n, BEFORE)];
             if after {
                 bars.push((fit.rmse_after_n, AFTER));
@@ -54,10 +61,6 @@ pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], additions: Option<
         let (left, bottom) = (panel.frame.left, panel.frame.bottom);
         canvas.line([(left, panel.frame.top), (left, bottom)], palette::SILVER, 1.0);
         panel.draw_x_axis(canvas);
-        let mut keys = vec![Key::new("base model, refitted", Mark::Patch, BEFORE)];
-        let with = additions.map(|additions| format!("with {additions}"));
-        keys.extend(with.as_deref().map(|with| Key::new(with, Mark::Patch, AFTER)));
-        keys.push(Key::new("noise floor", Mark::Dashes(1.8), palette::INK));
-        legend(canvas, &keys, panel.frame.right, 16.0);
+        legend_from(canvas, &keys, 8.0, 16.0);
     })
 }

@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use super::PageCoordinate;
+use super::course::{parabola, running_means};
 use super::samples::{Samples, extent};
 use crate::FigureError;
 use crate::page::style::{AFTER, BEFORE};
-use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, palette, thin};
+use crate::plot::{Anchor, Axis, Canvas, Key, Mark, Panel, Rect, legend, palette, thin};
 
 /// Points of a line.
 const POINTS: usize = 1500;
@@ -22,33 +23,37 @@ pub(super) struct Stretch<'a> {
 }
 
 impl<'a> Stretch<'a> {
-    /// The closed loop, of held-out recordings where there are any, whose mean square falls the most; where no loop is closed,
-    /// the sixth of a recording.
+    /// The closed loop that shows the effects best; where no loop is closed, the sixth of a recording.
     pub(super) fn most_telling(recordings: &'a [Samples]) -> Option<Self> {
-        let held_out = recordings.iter().any(|samples| samples.held_out && samples.model_n.is_some());
-        let chosen = || recordings.iter().filter(|samples| samples.held_out == held_out);
-        let closed = chosen().flat_map(|samples| {
+        let closed = recordings.iter().flat_map(|samples| {
             let coordinate = coordinate(samples);
             closed_loops(samples, coordinate).into_iter().map(move |rows| (samples, coordinate, rows, true))
         });
-        let sixths = chosen().flat_map(|samples| {
+        let sixths = recordings.iter().flat_map(|samples| {
             let n = samples.force_n.len();
             (0..6).map(move |part| (samples, coordinate(samples), part * n / 6..(part + 1) * n / 6, false))
         });
         Self::best(closed).or_else(|| Self::best(sixths))
     }
 
+    /// Of the stretches whose mean square falls by much, the one in which that is most of what is to be seen: the less the
+    /// force swings about its mean course, the larger the effects are drawn. A held-out one counts double.
     fn best(candidates: impl Iterator<Item = (&'a Samples, PageCoordinate, Range<usize>, bool)>) -> Option<Self> {
-        let mut best: Option<(f64, Self)> = None;
+        let mut found: Vec<(f64, f64, Self)> = Vec::new();
         for (samples, coordinate, rows, is_closed) in candidates.filter(|(_, _, rows, _)| rows.len() >= 2) {
             let (Some(model_n), Some(after_n)) = (&samples.model_n, &samples.after_n) else { continue };
             let gain = rows.clone().map(|row| samples.before_n[row].powi(2) - after_n[row].powi(2)).sum::<f64>();
             let gain = gain / rows.len() as f64;
-            if best.as_ref().is_none_or(|(most, _)| gain > *most) {
-                best = Some((gain, Self { samples, model_n, rows, coordinate, is_closed }));
-            }
+            let (x, force_n) = (&samples.column(coordinate)[rows.clone()], &samples.force_n[rows.clone()]);
+            let course = parabola(x, force_n);
+            let about: f64 = x.iter().zip(force_n).map(|(x, force_n)| (force_n - course.at(*x)).powi(2)).sum();
+            let weight = if samples.held_out { 2.0 } else { 1.0 };
+            let share = weight * gain / (about / rows.len() as f64).max(1e-9);
+            found.push((gain, share, Self { samples, model_n, rows, coordinate, is_closed }));
         }
-        best.map(|(_, stretch)| stretch)
+        let most = found.iter().map(|(gain, ..)| *gain).fold(f64::NEG_INFINITY, f64::max);
+        let much = found.into_iter().filter(|(gain, ..)| *gain >= LEAST_GAIN * most);
+        much.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(_, _, stretch)| stretch)
     }
 
     /// Whether it ends where it began.
@@ -79,6 +84,8 @@ fn coordinate(samples: &Samples) -> PageCoordinate {
 const CLOSED_WITHIN: f64 = 0.06;
 /// Share of the range that a loop has to span: a small one shows little.
 const LEAST_SPAN: f64 = 0.25;
+/// Share of the largest gain that a stretch has to reach to be shown.
+const LEAST_GAIN: f64 = 0.25;
 /// Fewer samples are no loop.
 const FEWEST: usize = 40;
 
@@ -143,34 +150,32 @@ fn turns(x: &[f64], least: f64) -> Vec<usize> {
 /// Draws the loop as it is, and without its mean course.
 pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
     let coordinate = stretch.coordinate;
-    let x = stretch.column(coordinate);
     let rows = stretch.rows.clone();
-    let lines: [(&[f64], Color, f64); 3] = [
-        (&stretch.samples.force_n[rows.clone()], palette::SILVER, 4.0),
-        (&stretch.samples.base_n[rows.clone()], BEFORE, 1.6),
-        (&stretch.model_n[rows], AFTER, 1.6),
-    ];
-    let course = parabola(x, lines[0].0);
-    let without: Vec<Vec<f64>> = lines
-        .iter()
-        .map(|(force_n, _, _)| force_n.iter().zip(x).map(|(force_n, x)| force_n - course.at(*x)).collect())
-        .collect();
+    // A model follows the noise of the gauge: running means let the loop be seen.
+    let window = 1 + rows.len() / 120;
+    let x = running_means(stretch.column(coordinate), window);
+    let forces: [&[f64]; 3] = [&stretch.samples.force_n, &stretch.samples.base_n, stretch.model_n];
+    let forces = forces.map(|force_n| running_means(&force_n[rows.clone()], window));
+    let colors = [(palette::SILVER, 4.0), (BEFORE, 1.6), (AFTER, 1.6)];
+    let course = parabola(&x, &forces[0]);
+    let without = forces
+        .each_ref()
+        .map(|force_n| -> Vec<f64> { force_n.iter().zip(&x).map(|(force_n, x)| force_n - course.at(*x)).collect() });
     Canvas::document(900, 400, "A loop before and after", |canvas, sheet| {
         let [left, right] = sheet.inset(0.0, 28.0, 0.0, 0.0).columns([1.0, 1.0], 12.0);
-        let mut draw = |cell: Rect, title: &str, y_title: &str, lines: &[(&[f64], Color, f64)]| {
-            let (lowest, highest) = extent(lines.iter().flat_map(|(force_n, _, _)| force_n.iter().copied()));
+        let mut draw = |cell: Rect, title: &str, y_title: &str, lines: &[Vec<f64>; 3]| {
+            let (lowest, highest) = extent(lines.iter().flat_map(|force_n| force_n.iter().copied()));
             let (from, to) = extent(x.iter().copied());
             let x_axis = Axis::linear(coordinate.axis_title(), from, to, 6);
             let panel = Panel::new(cell, x_axis, Axis::linear(y_title, lowest, highest, 6), 16.0);
             panel.draw_frame(canvas);
-            for (force_n, color, width) in lines {
+            for (force_n, (color, width)) in lines.iter().zip(colors) {
                 let kept = thin(force_n, POINTS);
-                panel.line(canvas, kept.into_iter().map(|row| (x[row], force_n[row])), *color, *width);
+                panel.line(canvas, kept.into_iter().map(|row| (x[row], force_n[row])), color, width);
             }
             canvas.bold(title, (panel.frame.left, cell.top + 18.0), Anchor::Start, 14.0, palette::INK);
         };
-        draw(left, "Force", "force (N)", &lines);
-        let without = [0, 1, 2].map(|line| (without[line].as_slice(), lines[line].1, lines[line].2));
+        draw(left, "Force", "force (N)", &forces);
         draw(right, "Less the mean course of the measured force", "difference (N)", &without);
         let keys = [
             Key::new("measured", Mark::Line(4.0), palette::SILVER),
@@ -181,60 +186,9 @@ pub(super) fn loops(stretch: &Stretch<'_>) -> Result<String, FigureError> {
     })
 }
 
-/// `a + b u + c u²` with `u = (x - middle) / span`.
-struct Parabola {
-    middle: f64,
-    span: f64,
-    weights: [f64; 3],
-}
-
-impl Parabola {
-    fn at(&self, x: f64) -> f64 {
-        let u = (x - self.middle) / self.span;
-        self.weights[0] + u * (self.weights[1] + u * self.weights[2])
-    }
-}
-
-/// Least squares by Gram–Schmidt on 1, u, u²; a column without anything of its own gets no weight.
-fn parabola(x: &[f64], y: &[f64]) -> Parabola {
-    let (lowest, highest) = extent(x.iter().copied());
-    let (middle, span) = (0.5 * (lowest + highest), (0.5 * (highest - lowest)).max(1e-9));
-    let u: Vec<f64> = x.iter().map(|x| (x - middle) / span).collect();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    // Each column with what it is in terms of the powers of u.
-    let mut basis: Vec<(Vec<f64>, [f64; 3])> = Vec::new();
-    for power in 0..3 {
-        let mut column: Vec<f64> = u.iter().map(|u| u.powi(power as i32)).collect();
-        let mut terms = [0.0; 3];
-        terms[power] = 1.0;
-        for (earlier, earlier_terms) in &basis {
-            let share = dot(&column, earlier) / dot(earlier, earlier);
-            column.iter_mut().zip(earlier).for_each(|(value, earlier)| *value -= share * earlier);
-            terms.iter_mut().zip(earlier_terms).for_each(|(term, earlier)| *term -= share * earlier);
-        }
-        if dot(&column, &column) > 1e-9 * x.len() as f64 {
-            basis.push((column, terms));
-        }
-    }
-    let mut weights = [0.0; 3];
-    for (column, terms) in &basis {
-        let share = dot(column, y) / dot(column, column);
-        weights.iter_mut().zip(terms).for_each(|(weight, term)| *weight += share * term);
-    }
-    Parabola { middle, span, weights }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_parabola_is_found_again() {
-        let x: Vec<f64> = (0..50).map(|index| 3.0 + 0.1 * f64::from(index)).collect();
-        let y: Vec<f64> = x.iter().map(|x| 2.0 - x + 0.5 * x * x).collect();
-        let course = parabola(&x, &y);
-        assert!(x.iter().zip(&y).all(|(x, y)| (course.at(*x) - y).abs() < 1e-9));
-    }
 
     #[test]
     fn turns_are_extremes_and_small_wiggles_are_none() {
@@ -244,11 +198,5 @@ mod tests {
         let expected = [0, 31, 94, 157, 220, 283, 346, 399];
         assert_eq!(found.len(), expected.len(), "{found:?}");
         assert!(found.iter().zip(expected).all(|(found, expected)| found.abs_diff(expected) <= 2), "{found:?}");
-    }
-
-    #[test]
-    fn a_channel_that_stands_still_has_a_mean_course() {
-        let course = parabola(&[2.0; 4], &[1.0, 2.0, 3.0, 4.0]);
-        assert!((course.at(2.0) - 2.5).abs() < 1e-12);
     }
 }

@@ -20,6 +20,7 @@
 mod content;
 mod coordinate;
 mod correlation;
+mod course;
 mod empirical;
 pub(crate) mod ending;
 mod fit_bars;
@@ -46,7 +47,7 @@ pub use coordinate::PageCoordinate;
 pub use empirical::{PageEmpirical, PageTerm};
 pub use recording::PageRecording;
 
-use crate::page::html::{self, figure, newtons, paragraph};
+use crate::page::html::{self, compact_figure, newtons, paragraph};
 use crate::page::{Section, document};
 use crate::{FigureError, Table};
 use samples::Samples;
@@ -109,7 +110,7 @@ fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
     let caption = "RMSE over counted samples. Samples around reversals, where noise hides the direction of friction, and beyond \
                    a sensor's range are not counted; the table has both.";
     let given = page.as_given.as_ref().map_or(String::new(), given::given);
-    Ok(paragraph(&text) + &figure(&svg, caption) + &html::table(&side_by_side(page)) + &given)
+    Ok(paragraph(&text) + &compact_figure(&svg, caption) + &html::table(&side_by_side(page)) + &given)
 }
 
 /// RMSE over counted and over all samples, side by side.

@@ -70,7 +70,7 @@ fn effect(effect: &PageEffect) -> String {
         html.push_str(&symbols(&effect.symbols));
     }
     if !effect.validity.is_empty() {
-        html.push_str(&remark(&format!("Holds: {}", effect.validity)));
+        html.push_str(&remark(&format!("Assumptions: {}", effect.validity)));
     }
     if !effect.source.is_empty() {
         html.push_str(&remark(&format!("Source: {}", effect.source)));

@@ -77,7 +77,7 @@ for (const figure of document.querySelectorAll("figure.strip")) {
       }
       for (const [value, label] of ticks(from, to, 12)) {
         rule(`M${x(value).toFixed(0)} ${up}v${height}`, "#E7E7E7");
-        letters(label, { x: x(value), y: up + height + 68, "text-anchor": "middle" }, group);
+        if (frame === bottom) letters(label, { x: x(value), y: up + height + 68, "text-anchor": "middle" }, group);
       }
       rule(`M${left} ${up}v${height}h${width}`, "#999999");
       const middle = up + height / 2;

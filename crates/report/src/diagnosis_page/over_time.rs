@@ -21,10 +21,10 @@ const OPEN: usize = 4;
 /// Samples that all strips carry together.
 const SAMPLES: usize = 50_000;
 
-/// What lets a reader zoom, read values off and hide lines. Other pages with strips like these take it from here.
+/// Script for zooming, reading values off and hiding lines. Other pages with strips like these take it from here.
 pub(crate) const SCRIPT: &str = include_str!("over_time.js");
 
-/// What the base model and the augmented one are called beside one another.
+/// Names of the base model and of the augmented one beside one another.
 pub(super) const NAMES: [&str; 2] = ["before", "after"];
 
 /// Strips of `recordings`; `floor` is the noise floor of one in N, `names` those of the two models.

@@ -180,7 +180,7 @@ fn axis(coordinate: PageCoordinate, recordings: &[Samples]) -> Axis {
         PageCoordinate::TravelSinceReversal | PageCoordinate::TimeSinceLastMove | PageCoordinate::Speed
     );
     if skewed {
-        // What matters sits at the small values: after the reversal, right after the stop.
+        // The small values matter: after the reversal, right after the stop.
         let positive: Vec<f64> = values.iter().copied().filter(|value| *value > 0.0).collect();
         let (low, high) = (quantile(&positive, 0.02), quantile(&positive, 0.999));
         if high > 20.0 * low {

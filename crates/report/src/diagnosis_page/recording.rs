@@ -35,7 +35,7 @@ pub struct PageRecording {
 }
 
 impl PageRecording {
-    /// What is drawn over time alone: force as measured and of two models, and whether a sample counts.
+    /// Columns drawn over time alone: force as measured and of two models, and whether a sample counts.
     pub fn over_time(
         name: String,
         [time_s, force_n, base_force_n, model_force_n]: [Vec<f64>; 4],

@@ -30,8 +30,15 @@ pub(super) fn residual_maps(
         if limit > 0.0 { limit } else { 1.0 }
     };
     let (mean_limit, rms_limit) = (limit(Sum::mean, noise_n), limit(Sum::rms, 2.5 * noise_n));
-    let mean_bar = ColorBar { title: "mean (N)".to_owned(), from: -mean_limit, to: mean_limit, color: mean_color };
-    let rms_bar = ColorBar { title: "rms (N)".to_owned(), from: 0.0, to: rms_limit, color: size_color };
+    let mean_bar = ColorBar {
+        title: "mean (N)".to_owned(),
+        from: -mean_limit,
+        to: mean_limit,
+        logarithm: false,
+        color: mean_color,
+    };
+    let rms_bar =
+        ColorBar { title: "rms (N)".to_owned(), from: 0.0, to: rms_limit, logarithm: false, color: size_color };
     let height = if after { 2.0 * ROW } else { ROW };
     Canvas::document(900, height as u32, "Residual over pressure and contraction", |canvas, sheet| {
         let [left, right] = sheet.columns([1.0, 1.0], 20.0);

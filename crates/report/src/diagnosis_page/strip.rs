@@ -4,7 +4,7 @@ use super::samples::{Samples, extent};
 use crate::FigureError;
 use crate::page::html::newtons;
 use crate::page::style::{AFTER, BEFORE, MARKED, NOISE};
-use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, Timeline, legend, palette, text_width};
+use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, Timeline, legend_from, palette, text_width};
 use crate::residual_cells::quantile;
 
 /// Points of a line, which are about as many as pixels.
@@ -72,10 +72,10 @@ fn panels(samples: &Samples, noise_n: f64) -> [Panel; 2] {
     let frame = |top: f64, bottom: f64| Rect { left: 74.0, top, right: f64::from(SHEET.0) - 12.0, bottom };
     let panel =
         |frame: Rect, x: &str, y: Axis| Panel { frame, x: Axis::exact(x, from, to, 12), y, upward_labels: false };
-    [
-        panel(frame(48.0, 198.0), "", Axis::linear("force (N)", low - margin, high + margin, 5)),
-        panel(frame(222.0, 326.0), "time (s)", Axis::exact("residual (N)", -limit, limit, 4)),
-    ]
+    let mut force = panel(frame(48.0, 204.0), "", Axis::linear("force (N)", low - margin, high + margin, 5));
+    // The axis below the residual is that of both.
+    force.x.ticks.iter_mut().for_each(|(_, label)| label.clear());
+    [force, panel(frame(216.0, 326.0), "time (s)", Axis::exact("residual (N)", -limit, limit, 4))]
 }
 
 fn header(canvas: &mut Canvas<'_>, sheet: Rect, samples: &Samples, names: [&str; 2]) {
@@ -107,7 +107,8 @@ fn header(canvas: &mut Canvas<'_>, sheet: Rect, samples: &Samples, names: [&str;
     if !samples.stretches.is_empty() {
         keys.push(Key::new("stands out", Mark::Patch, MARKED.faded(0.45)));
     }
-    legend(canvas, &keys, sheet.right - 12.0, 33.0);
+    // On the left, where a narrow screen shows it without scrolling.
+    legend_from(canvas, &keys, left, 33.0);
 }
 
 fn draw_force(canvas: &mut Canvas<'_>, panel: &Panel, samples: &Samples) {

@@ -91,7 +91,7 @@ fn matrix(isolability: &PageIsolability) -> Result<String, FigureError> {
                 _ => String::new(),
             })
             .collect(),
-        bar: ColorBar { title: "cosine".to_owned(), from: 0.0, to: 1.0, color: size_color },
+        bar: ColorBar { title: "cosine".to_owned(), from: 0.0, to: 1.0, logarithm: false, color: size_color },
     };
     // The axis has no title, whose room the sheet can do without. Cells stay about square between the labels on both sides.
     let height = (26 * n as u32 + 240).clamp(360, 940);

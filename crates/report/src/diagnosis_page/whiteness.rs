@@ -17,7 +17,7 @@ pub(super) fn whiteness(recordings: &[Samples]) -> Result<String, FigureError> {
     if recordings.is_empty() {
         return Ok(String::new());
     }
-    // What was held out tells more: nothing was fitted to it.
+    // Held-out recordings tell more: nothing was fitted to them.
     let held_out = recordings.iter().any(|samples| samples.held_out);
     let chosen = || recordings.iter().filter(|samples| samples.held_out == held_out);
     let after = chosen().all(|samples| samples.after_n.is_some());

@@ -2,14 +2,14 @@
 //! modelled force where a recording has neither.
 
 use super::clean::{Clean, extent, mean, quantile};
+use super::curve_labels::{label_within, labels};
+use super::curves::{Mean, curves};
 use super::sweeps::{Sweep, sweeps};
 use super::{CONTRACTING, EXTENDING, Role};
 use crate::number::significant;
-use crate::plot::{
-    Axis, Canvas, Color, Key, Mark, Panel, Rect, density, legend, note, palette, round_levels, thin, title,
-};
+use crate::plot::{Axis, Canvas, Key, Mark, Panel, Rect, density, legend, note, palette, round_levels, thin, title};
 
-/// What runs along the horizontal axis; the other of the two tells curves apart.
+/// The channel along the horizontal axis; the other of the two tells curves apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Abscissa {
     /// Length; curves differ in pressure.
@@ -22,17 +22,6 @@ pub(super) enum Abscissa {
 const POINTS: usize = 12_000;
 /// More turns than this in one recording are noise in its direction.
 const MOST_RUNS: usize = 300;
-
-/// Means of one recording at one level, in one direction.
-#[derive(Debug)]
-struct Mean {
-    level: usize,
-    contracting: bool,
-    at: f64,
-    force_n: f64,
-    model_n: f64,
-    role: Role,
-}
 
 impl Abscissa {
     pub(super) fn along(self, recording: &Clean) -> &[f64] {
@@ -57,7 +46,7 @@ impl Abscissa {
     }
 
     /// A level of the other channel in words.
-    fn level_text(self, level: f64) -> String {
+    pub(super) fn level_text(self, level: f64) -> String {
         if self == Self::Length {
             format!("{} kPa", significant(level, 3))
         } else {
@@ -97,6 +86,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, (letter, abscissa): (&st
     draw_sweeps(canvas, &panel, abscissa, &sweeps);
     draw_means(canvas, &panel, &means);
     panel.label_right(canvas, &labels);
+    label_within(canvas, &panel, (abscissa, along), &sweeps);
     draw_legend(canvas, cell, (letter, abscissa), (&sweeps, &means));
 }
 
@@ -116,7 +106,10 @@ fn agreement(canvas: &mut Canvas<'_>, cell: Rect, (letter, abscissa): (&str, Abs
     let ends = extent(chosen().flat_map(|recording| recording.force_n.iter().copied()));
     let points =
         chosen().flat_map(|recording| recording.model_n.iter().copied().zip(recording.force_n.iter().copied()));
-    density(canvas, cell, points, ends);
+    let axis = |name: &str| Axis::linear(name, ends.0, ends.1, 6);
+    let panel = density(canvas, cell, points, [axis("modelled force (N)"), axis("measured force (N)")]);
+    let (low, high) = (panel.x.from, panel.x.to);
+    panel.line(canvas, [(low, low), (high, high)], palette::VERMILION, 1.2);
 }
 
 /// Round levels of the other channel, for recordings in which this one stands still.
@@ -228,77 +221,6 @@ fn draw_means(canvas: &mut Canvas<'_>, panel: &Panel, means: &[Mean]) {
             }
         }
     }
-}
-
-/// One level in one direction, over recordings.
-#[derive(Debug)]
-struct Curve {
-    level: usize,
-    contracting: bool,
-    /// Modelled force over the abscissa.
-    model: Vec<(f64, f64)>,
-    /// Abscissa and measured force at the right end.
-    end: (f64, f64),
-}
-
-/// Curves through means; recordings closer than `same` are averaged.
-fn curves(means: &[Mean], same: f64) -> Vec<Curve> {
-    let levels = means.iter().map(|mean| mean.level + 1).max().unwrap_or(0);
-    let mut curves = Vec::new();
-    for level in 0..levels {
-        for contracting in [true, false] {
-            let mut sorted: Vec<&Mean> =
-                means.iter().filter(|mean| mean.level == level && mean.contracting == contracting).collect();
-            sorted.sort_by(|a, b| a.at.total_cmp(&b.at));
-            let groups = sorted.chunk_by(|a, b| b.at - a.at <= same);
-            let mut model = Vec::new();
-            let mut end = (f64::NAN, f64::NAN);
-            for group in groups {
-                let count = group.len() as f64;
-                let mean = |of: fn(&Mean) -> f64| group.iter().map(|mean| of(mean)).sum::<f64>() / count;
-                end = (mean(|mean| mean.at), mean(|mean| mean.force_n));
-                model.push((end.0, mean(|mean| mean.model_n)));
-            }
-            if !model.is_empty() {
-                curves.push(Curve { level, contracting, model, end });
-            }
-        }
-    }
-    curves
-}
-
-/// What is written at the right ends of curves: the other channel's value.
-fn labels(
-    abscissa: Abscissa,
-    sweeps: &[Sweep<'_>],
-    means: &[Mean],
-    levels: &[f64],
-    (lowest, highest): (f64, f64),
-) -> Vec<(f64, String, Color)> {
-    // The label of a curve that ends far from the edge would seem to belong to another.
-    let reaches_edge = |at: f64| at >= highest - 0.2 * (highest - lowest);
-    // Text, sum of heights, how many.
-    let mut labels: Vec<(String, f64, f64)> = Vec::new();
-    let mut add = |text: String, height: f64| match labels.iter_mut().find(|label| label.0 == text) {
-        Some(label) => (label.1, label.2) = (label.1 + height, label.2 + 1.0),
-        None => labels.push((text, height, 1.0)),
-    };
-    for curve in curves(means, 0.0) {
-        if reaches_edge(curve.end.0) {
-            add(abscissa.level_text(levels[curve.level]), curve.end.1);
-        }
-    }
-    for Sweep { recording, rows, level, .. } in sweeps {
-        let along = &abscissa.along(recording)[rows.clone()];
-        let end = quantile(along, 0.97);
-        if reaches_edge(end) {
-            let force_n = &recording.force_n[rows.clone()];
-            let at_end: Vec<f64> =
-                along.iter().zip(force_n).filter(|(x, _)| **x >= end).map(|(_, force)| *force).collect();
-            add(abscissa.level_text(*level), mean(&at_end));
-        }
-    }
-    labels.into_iter().map(|(text, sum, count)| (sum / count, text, palette::GRAY)).collect()
 }
 
 fn draw_legend(

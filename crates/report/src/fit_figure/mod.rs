@@ -16,6 +16,8 @@
 mod characteristic;
 mod clean;
 mod convergence;
+mod curve_labels;
+mod curves;
 mod histogram;
 mod residual_map;
 mod residual_time;
@@ -26,7 +28,7 @@ use crate::number::significant;
 use crate::plot::{Anchor, Canvas, Color, Rect, palette};
 use clean::Clean;
 
-/// What a recording was used for.
+/// Use of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// The parameters were fitted to it.
@@ -41,7 +43,7 @@ pub enum Role {
 pub struct FitRecording {
     /// Name to show, such as the file's.
     pub name: String,
-    /// What it was used for.
+    /// Its use.
     pub role: Role,
     /// Time, in s.
     pub time_s: Vec<f64>,

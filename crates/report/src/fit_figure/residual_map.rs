@@ -25,8 +25,13 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, cell: Rect, recordings: &[Clean], no
     let sizes: Vec<f64> = values.iter().flatten().map(|value| value.abs()).collect();
     let limit = quantile(&sizes, 0.98).max(noise_n.unwrap_or(0.0));
     let limit = if limit > 0.0 { limit } else { 1.0 };
-    let bar =
-        ColorBar { title: "mean (N)".to_owned(), from: -limit, to: limit, color: |share| diverging(2.0 * share - 1.0) };
+    let bar = ColorBar {
+        title: "mean (N)".to_owned(),
+        from: -limit,
+        to: limit,
+        logarithm: false,
+        color: |share| diverging(2.0 * share - 1.0),
+    };
     Map { columns, rows, values, texts: Vec::new(), bar }.draw(canvas, cell);
     title(canvas, cell, "d", "Residual over pressure and length");
 }

@@ -121,6 +121,8 @@ impl<'a> Names<'a> {
     /// Draws boundaries and names, with the RMSE where there is room left.
     fn draw(&self, canvas: &mut Canvas<'_>, panel: &Panel, recordings: &[Clean]) {
         let top = panel.frame.top;
+        // Where the last name of the lower and of the raised row ends.
+        let mut row_end = [panel.frame.left; 2];
         for (index, (name, recording)) in self.names.iter().zip(recordings).enumerate() {
             let raised = self.two_rows && index % 2 == 0;
             let (left, right) = self.edges[index];
@@ -136,10 +138,25 @@ impl<'a> Names<'a> {
             let end = if self.two_rows { self.edges.get(index + 1).map_or(right, |next| next.1) } else { right };
             let width = end - left - GAP;
             let with_rmse = format!("{name}, RMSE {} N", significant(rmse_n(recording), 3));
-            let text = if text_width(&with_rmse, NAME_SIZE) <= width { with_rmse } else { shortened(name, width) };
             let estimation = recording.role == Role::Estimation;
             let color = if estimation { palette::GRAY } else { VALIDATION.toward(palette::INK, 0.3) };
             let y = top - if raised { 21.0 } else { 8.0 };
+            let fits = |text: &str, width: f64| text_width(text, NAME_SIZE) <= width;
+            let row = usize::from(raised);
+            // The last name of a row may begin further left, where the name before it has ended.
+            let room = panel.frame.right + 8.0 - row_end[row] - GAP;
+            let is_last = end >= panel.frame.right - 1.0;
+            let back = [&with_rmse, *name].into_iter().find(|text| is_last && !fits(name, width) && fits(text, room));
+            if let Some(text) = back {
+                canvas.text(text, (panel.frame.right + 8.0, y), Anchor::End, NAME_SIZE, color);
+                continue;
+            }
+            let text = if fits(&with_rmse, width) { with_rmse } else { shortened(name, width) };
+            // Three letters say nothing.
+            if text.chars().count() < name.chars().count().min(6) {
+                continue;
+            }
+            row_end[row] = left + 4.0 + text_width(&text, NAME_SIZE);
             canvas.text(&text, (left + 4.0, y), Anchor::Start, NAME_SIZE, color);
         }
     }

@@ -94,7 +94,7 @@ fn widest_of_each_level(found: Vec<Sweep<'_>>) -> Vec<Sweep<'_>> {
     };
     let mut chosen: Vec<Option<Sweep<'_>>> = vec![None; levels.len().max(1)];
     for sweep in found {
-        // What was fitted is shown before what was held out, which has panels of its own.
+        // Fitted recordings are shown before held-out ones, which have panels of their own.
         let worth = |sweep: &Sweep<'_>| (sweep.recording.role == Role::Estimation, sweep.span);
         let place = &mut chosen[nearest(sweep.level)];
         if place.as_ref().is_none_or(|best| worth(best) < worth(&sweep)) {

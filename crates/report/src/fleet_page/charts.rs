@@ -13,6 +13,9 @@ const NAMED: usize = 14;
 /// Width and height of a chart, in pixels; its letters are legible on a page 800 pixels wide.
 const WIDTH: u32 = 780;
 const HEIGHT: u32 = 230;
+/// Points up to which a chart takes half of the page, and its width then, in pixels.
+const NARROW: usize = 120;
+const NARROW_WIDTH: u32 = 540;
 
 pub(super) fn charts(page: &FleetPage) -> Result<String, FigureError> {
     if page.charts.is_empty() {
@@ -22,8 +25,10 @@ pub(super) fn charts(page: &FleetPage) -> Result<String, FigureError> {
         "A dot is a campaign; rigs stand side by side, dates run from left to right within each. The shaded band holds what is \
          expected of the make: median and robust spread, as wide as the number of values on this page asks for, so that chance \
          alone puts a value outside in one of twenty fleets. Values outside are orange; what a whole rig shares does not count \
-         against its muscles.",
+         against its muscles, and a value with a larger standard error than usual has wider limits of its own.",
     );
+    let narrow = page.charts.iter().all(|chart| chart.points.len() <= NARROW);
+    html.push_str(if narrow { "<div class=\"charts\">\n" } else { "<div>\n" });
     for chart in &page.charts {
         let caption = match chart.limits {
             Some(_) => {
@@ -32,8 +37,10 @@ pub(super) fn charts(page: &FleetPage) -> Result<String, FigureError> {
             }
             None => format!("{}: no limits, since values are too few or mostly equal.", chart.title),
         };
-        html.push_str(&figure(&drawn(page, chart)?, &caption));
+        let width = if narrow { NARROW_WIDTH } else { WIDTH };
+        html.push_str(&figure(&drawn(page, chart, width)?, &caption));
     }
+    html.push_str("</div>\n");
     Ok(html)
 }
 
@@ -71,13 +78,13 @@ fn in_order<'a>(page: &FleetPage, chart: &'a FleetChart) -> Vec<&'a FleetPoint> 
     points
 }
 
-fn drawn(page: &FleetPage, chart: &FleetChart) -> Result<String, FigureError> {
+fn drawn(page: &FleetPage, chart: &FleetChart, width: u32) -> Result<String, FigureError> {
     let (chart, unit) = in_a_handy_unit(chart);
     let points = in_order(page, &chart);
     let (low, high) = extent(&chart);
     let unit = if unit == "1" { String::new() } else { format!(" ({unit})") };
     let title = format!("{}{unit}", chart.title);
-    Canvas::document(WIDTH, HEIGHT, &title, |canvas, sheet| {
+    Canvas::document(width, HEIGHT, &title, |canvas, sheet| {
         let y = if chart.logarithmic { Axis::logarithmic("", low, high) } else { Axis::linear("", low, high, 4) };
         // Names of rigs take the place of ticks.
         let mut x = Axis::exact("", -0.7, points.len() as f64 - 0.3, 1);
@@ -168,7 +175,7 @@ fn spot(panel: &Panel, place: usize, value: f64) -> (f64, f64) {
     (x, y.clamp(panel.frame.top + EDGE, panel.frame.bottom - EDGE))
 }
 
-/// What the vertical axis covers: the limits and most values; one far outside stands at the edge.
+/// Extent of the vertical axis: the limits and most values; one far outside stands at the edge.
 fn extent(chart: &FleetChart) -> (f64, f64) {
     let scaled = |value: f64| if chart.logarithmic { value.ln() } else { value };
     let values = || chart.points.iter().map(|point| scaled(point.value)).filter(|value| value.is_finite());

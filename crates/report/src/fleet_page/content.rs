@@ -1,4 +1,4 @@
-//! What the page says.
+//! Content of the page.
 
 use crate::PageVerdict;
 
@@ -11,7 +11,7 @@ pub struct FleetPage {
     pub campaigns: Vec<FleetCampaign>,
     /// Campaigns that stand out, the weightiest first.
     pub standing: Vec<FleetStanding>,
-    /// What most muscles of a make share, in words.
+    /// Findings that most muscles of a make share, in words.
     pub common: Vec<String>,
     /// Rigs and days that differ, the clearest first.
     pub shifts: Vec<FleetShift>,
@@ -23,7 +23,7 @@ pub struct FleetPage {
     pub n_changes_weighed: usize,
     /// Control charts.
     pub charts: Vec<FleetChart>,
-    /// What could not be used.
+    /// Campaigns that could not be used.
     pub refusals: Vec<FleetRefusal>,
 }
 
@@ -40,7 +40,7 @@ pub struct FleetCampaign {
     pub make: String,
     /// How it ended: `accepted`, `rejected`, `refused`.
     pub outcome: &'static str,
-    /// What its diagnosis says; none where there is no diagnosis.
+    /// Verdict of its diagnosis; none where there is no diagnosis.
     pub verdict: Option<PageVerdict>,
     /// Missing physics by catalogue id, with the force that it explains, root mean square, in N.
     pub effects: Vec<(String, f64)>,
@@ -48,7 +48,7 @@ pub struct FleetCampaign {
     pub rmse_n: Option<f64>,
     /// Residual on the held-out recordings, in N.
     pub holdout_rmse_n: Option<f64>,
-    /// What the sensors leave, in N.
+    /// Noise floor, in N.
     pub noise_n: Option<f64>,
     /// Where the page of its diagnosis lies, seen from this one.
     pub link: Option<String>,
@@ -78,7 +78,7 @@ pub struct FleetShift {
     pub shift: String,
     /// Shift over its standard error.
     pub distance: f64,
-    /// What was compared, in words.
+    /// The comparison in words.
     pub compared: String,
 }
 

@@ -24,7 +24,13 @@ pub(super) fn pressure(canvas: &mut Canvas<'_>, cell: Rect, map: &InverseMap) {
     let values = map.values(|network_kpa, _| network_kpa);
     let (lowest, highest) = extent(values.iter().copied().flatten());
     let axis = Axis::linear("", lowest, highest, 5);
-    let bar = ColorBar { title: "pressure (kPa)".to_owned(), from: axis.from, to: axis.to, color: stepped_sequential };
+    let bar = ColorBar {
+        title: "pressure (kPa)".to_owned(),
+        from: axis.from,
+        to: axis.to,
+        logarithm: false,
+        color: stepped_sequential,
+    };
     let panel = map.draw(canvas, cell, &values, &bar);
     let levels = round_levels(lowest, highest, 9);
     for level in levels.iter().filter(|level| **level > lowest) {
@@ -52,7 +58,13 @@ pub(super) fn slope(canvas: &mut Canvas<'_>, cell: Rect, map: &SlopeMap) {
     let values: Vec<Option<f64>> = map.cells.iter().map(rising).collect();
     let (_, highest) = extent(values.iter().copied().flatten());
     let axis = Axis::linear("", 0.0, highest, 5);
-    let bar = ColorBar { title: "dF/dp (N/kPa)".to_owned(), from: 0.0, to: axis.to, color: stepped_sequential };
+    let bar = ColorBar {
+        title: "dF/dp (N/kPa)".to_owned(),
+        from: 0.0,
+        to: axis.to,
+        logarithm: false,
+        color: stepped_sequential,
+    };
     let n_rows = map.cells.len() / map.n_columns.max(1);
     let (columns, rows) = (length_axis(map.length_mm), exact_axis("pressure (kPa)", map.pressure_kpa));
     let (columns, rows) = (Bins::Equal(columns, map.n_columns), Bins::Equal(rows, n_rows));
@@ -97,6 +109,7 @@ pub(super) fn error(canvas: &mut Canvas<'_>, cell: Rect, maps: &[InverseMap; 2])
     let values: Vec<Option<f64>> = map.cells.iter().map(error_kpa).collect();
     let limit_kpa = limit_kpa(maps);
     let bar = ColorBar {
+        logarithm: false,
         title: "error (kPa)".to_owned(),
         from: -limit_kpa,
         to: limit_kpa,
@@ -104,7 +117,7 @@ pub(super) fn error(canvas: &mut Canvas<'_>, cell: Rect, maps: &[InverseMap; 2])
     };
     map.draw(canvas, cell, &values, &bar);
     let (y, _) = title(canvas, cell, "c", "Network less exact inverse, worse direction");
-    // What is outside the domain, panel a has said.
+    // Panel a shows the points outside the domain.
     if map.has_missing() {
         keys(canvas, cell, y + 2.0, true);
     }
@@ -183,7 +196,7 @@ fn draw_runs(
     panel
 }
 
-/// What the colors of errors end at: nearly all of them lie below.
+/// End of the colors of errors: nearly all of them lie below.
 fn limit_kpa(maps: &[InverseMap; 2]) -> f64 {
     let mut sizes: Vec<f64> =
         maps.iter().flat_map(|map| map.values(|network, exact| (network - exact).abs())).flatten().collect();

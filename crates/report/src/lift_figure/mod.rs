@@ -110,8 +110,8 @@ fn panels(figure: &LiftFigure) -> [PanelData; 6] {
     let panel = |title, axis, curves| PanelData { title, axis, curves };
     [
         panel("Angle of the elbows", "angle (rad)", on("reference", 6.0, angle, |arm| &arm.angle_rad)),
-        panel("Error of the angle", "error (mrad)", errors(angle, |arm| &arm.angle_rad)),
-        panel("Error of the velocity", "error (mrad/s)", errors(velocity, |arm| &arm.velocity_rad_per_s)),
+        panel("Tracking error, angle", "error (mrad)", errors(angle, |arm| &arm.angle_rad)),
+        panel("Tracking error, velocity", "error (mrad/s)", errors(velocity, |arm| &arm.velocity_rad_per_s)),
         panel(
             "Angular acceleration",
             "acceleration (rad/s²)",

@@ -33,6 +33,11 @@ pub(crate) fn figure(svg: &str, caption: &str) -> String {
     format!("<figure>\n{svg}<figcaption>{}</figcaption>\n</figure>\n", escaped(caption))
 }
 
+/// A narrow figure, which is not stretched to the width of the page.
+pub(crate) fn compact_figure(svg: &str, caption: &str) -> String {
+    format!("<figure class=\"compact\">\n{svg}<figcaption>{}</figcaption>\n</figure>\n", escaped(caption))
+}
+
 /// A table that scrolls by itself where the page is narrow.
 pub(crate) fn table(table: &crate::Table) -> String {
     format!("<div class=\"scroll\">\n{}</div>\n", table.to_html())

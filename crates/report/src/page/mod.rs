@@ -1,4 +1,4 @@
-//! What pages are made of: the document around them, its pieces, and its colors in the light and in the dark.
+//! Parts of pages: the document around them, its pieces, and its colors in the light and in the dark.
 
 pub(crate) mod html;
 pub(crate) mod style;

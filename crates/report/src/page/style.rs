@@ -13,7 +13,7 @@ use crate::plot::{Color, diverging, palette, sequential};
 pub(crate) const BEFORE: Color = palette::VERMILION;
 /// Residuals of base model and effects.
 pub(crate) const AFTER: Color = palette::BLUE;
-/// What noise leaves; not the gray of samples that are not counted.
+/// The band of the noise; not the gray of samples that are not counted.
 pub(crate) const NOISE: Color = palette::GREEN.faded(0.24);
 /// Regions.
 pub(crate) const MARKED: Color = palette::ORANGE.faded(0.2);

@@ -5,11 +5,11 @@ use crate::plot::{Anchor, Axis, Canvas, Color, Panel, Rect, palette, text_width}
 /// One bar.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bar {
-    /// What it stands for, written left of it.
+    /// Its name, written left of it.
     pub name: String,
     /// Its length.
     pub value: f64,
-    /// What is written at its end.
+    /// Text at its end.
     pub text: String,
     /// Its color.
     pub color: Color,

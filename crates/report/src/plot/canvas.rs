@@ -149,7 +149,7 @@ impl Canvas<'_> {
         self.lettering(text, at, anchor, size, color, &format!(" transform=\"rotate(270 {x} {y})\""));
     }
 
-    /// What `draw` draws, as a group with these attributes, which a page's style sheet or script can address.
+    /// The drawing of `draw` as a group with these attributes, which a page's style sheet or script can address.
     pub fn group(&mut self, attributes: &[(&str, &str)], draw: impl FnOnce(&mut Canvas<'_>)) {
         self.end_path();
         self.text.push_str("<g");

@@ -1,23 +1,21 @@
-//! Measured against modelled, as a map of how many samples lie where; thousands of dots would hide one another.
+//! How many samples lie where, as a map; thousands of dots would hide one another.
 
-use crate::plot::{Axis, Bins, Canvas, ColorBar, Map, Rect, palette, sequential};
+use crate::plot::{Axis, Bins, Canvas, ColorBar, Map, Panel, Rect, sequential};
 
 /// Cells along each axis.
 const CELLS: usize = 60;
 
-/// Draws `points`, modelled and measured force in N, between `lowest` and `highest`, with the line on which the two agree.
+/// Draws `points` over two axes; gives the panel for lines to be drawn on it.
 pub(crate) fn density(
     canvas: &mut Canvas<'_>,
     cell: Rect,
     points: impl Iterator<Item = (f64, f64)>,
-    (lowest, highest): (f64, f64),
-) {
-    let axis = |name: &str| Axis::linear(name, lowest, highest, 6);
-    let (columns, rows) =
-        (Bins::Equal(axis("modelled force (N)"), CELLS), Bins::Equal(axis("measured force (N)"), CELLS));
+    [x, y]: [Axis; 2],
+) -> Panel {
+    let (columns, rows) = (Bins::Equal(x, CELLS), Bins::Equal(y, CELLS));
     let mut counts = vec![0_u32; CELLS * CELLS];
-    for (modelled, measured) in points {
-        if let Some((column, row)) = columns.bin_of(modelled).zip(rows.bin_of(measured)) {
+    for (x, y) in points {
+        if let Some((column, row)) = columns.bin_of(x).zip(rows.bin_of(y)) {
             counts[row * CELLS + column] += 1;
         }
     }
@@ -25,13 +23,12 @@ pub(crate) fn density(
     // Few samples far off are what matters, so that colors go by the logarithm.
     let value = |count: &u32| (*count > 0).then(|| f64::from(*count).log10());
     let bar = ColorBar {
-        title: "samples (log₁₀)".to_owned(),
+        title: "samples".to_owned(),
         from: 0.0,
         to: most.log10(),
+        logarithm: true,
         color: |share| sequential(0.25 + 0.75 * (12.0 * share).round() / 12.0),
     };
     let values = counts.iter().map(value).collect();
-    let panel = Map { columns, rows, values, texts: Vec::new(), bar }.draw(canvas, cell);
-    let (low, high) = (panel.x.from, panel.x.to);
-    panel.line(canvas, [(low, low), (high, high)], palette::VERMILION, 1.2);
+    Map { columns, rows, values, texts: Vec::new(), bar }.draw(canvas, cell)
 }

@@ -27,9 +27,9 @@ pub enum Mark {
 /// An entry of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Key {
-    /// What is written.
+    /// Text.
     pub text: String,
-    /// What stands before it.
+    /// Mark before it.
     pub mark: Mark,
     /// Color of the mark.
     pub color: Color,
@@ -44,11 +44,24 @@ impl Key {
 
 /// Draws `keys` in one row that ends at `right`, its middle at height `y`; gives the left end of the row.
 pub fn legend(canvas: &mut Canvas<'_>, keys: &[Key], right: f64, y: f64) -> f64 {
-    let widths: Vec<f64> = keys.iter().map(|key| MARK + text_width(&key.text, SIZE)).collect();
-    let gaps = GAP * keys.len().saturating_sub(1) as f64;
-    let left = right - widths.iter().sum::<f64>() - gaps;
+    let left = right - legend_width(keys);
+    legend_from(canvas, keys, left, y);
+    left
+}
+
+/// Width of a row of `keys`, in pixels.
+pub fn legend_width(keys: &[Key]) -> f64 {
+    keys.iter().map(width).sum::<f64>() + GAP * keys.len().saturating_sub(1) as f64
+}
+
+fn width(key: &Key) -> f64 {
+    MARK + text_width(&key.text, SIZE)
+}
+
+/// Draws `keys` in one row that begins at `left`, its middle at height `y`.
+pub fn legend_from(canvas: &mut Canvas<'_>, keys: &[Key], left: f64, y: f64) {
     let mut x = left;
-    for (key, width) in keys.iter().zip(widths) {
+    for key in keys {
         let (from, to) = ((x, y), (x + MARK - 6.0, y));
         let middle = (0.5 * (from.0 + to.0), y);
         match key.mark {
@@ -62,7 +75,6 @@ pub fn legend(canvas: &mut Canvas<'_>, keys: &[Key], right: f64, y: f64) -> f64 
             }
         }
         canvas.text(&key.text, (x + MARK, y), Anchor::Start, SIZE, palette::GRAY);
-        x += width + GAP;
+        x += width(key) + GAP;
     }
-    left
 }

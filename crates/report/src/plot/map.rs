@@ -44,7 +44,7 @@ impl Bins {
     }
 }
 
-/// What the colors of a map mean.
+/// Meaning of a map's colors.
 #[derive(Debug, Clone)]
 pub struct ColorBar {
     /// Title with unit, written above the bar.
@@ -53,6 +53,8 @@ pub struct ColorBar {
     pub from: f64,
     /// Highest value.
     pub to: f64,
+    /// Whether values are decimal logarithms: the bar then shows the numbers themselves.
+    pub logarithm: bool,
     /// Color at a share of the way from lowest (0) to highest (1).
     pub color: fn(f64) -> Color,
 }
@@ -66,7 +68,7 @@ pub struct Map {
     pub rows: Bins,
     /// A value per cell, rows from the bottom, columns from the left; `None` stays blank.
     pub values: Vec<Option<f64>>,
-    /// What is written into each cell, in the same order; may be empty.
+    /// Text of each cell, in the same order; may be empty.
     pub texts: Vec<String>,
     /// Meaning of the colors.
     pub bar: ColorBar,
@@ -119,9 +121,17 @@ impl ColorBar {
             let strip = Rect { top: at(step + 1), bottom: (at(step) + 0.5).min(frame.bottom), ..frame };
             canvas.rect(strip, (self.color)((step as f64 + 0.5) / STEPS as f64));
         }
-        let axis = Axis::exact("", self.from, self.to, 5);
+        let (axis, at): (Axis, fn(f64) -> f64) = if self.logarithm {
+            (Axis::logarithmic("", 10f64.powf(self.from), 10f64.powf(self.to)), f64::log10)
+        } else {
+            (Axis::exact("", self.from, self.to, 5), |value| value)
+        };
         for (value, label) in &axis.ticks {
-            let y = frame.bottom - axis.fraction(*value) * frame.height();
+            let share = (at(*value) - self.from) / (self.to - self.from);
+            if !(-1e-9..=1.0 + 1e-9).contains(&share) {
+                continue;
+            }
+            let y = frame.bottom - share * frame.height();
             canvas.line([(frame.right, y), (frame.right + 4.0, y)], palette::SILVER, 1.0);
             canvas.text(label, (frame.right + 7.0, y), Anchor::Start, 11.5, palette::GRAY);
         }
@@ -148,7 +158,13 @@ mod tests {
             rows: Bins::Named("true".to_owned(), names),
             values: vec![Some(0.9), None, Some(0.1), Some(1.0)],
             texts: ["90 %", "", "10 %", "100 %"].map(str::to_owned).to_vec(),
-            bar: ColorBar { title: "share".to_owned(), from: 0.0, to: 1.0, color: crate::plot::sequential },
+            bar: ColorBar {
+                title: "share".to_owned(),
+                from: 0.0,
+                to: 1.0,
+                logarithm: false,
+                color: crate::plot::sequential,
+            },
         };
         let svg = Canvas::document(400, 300, "confusion", |canvas, sheet| {
             map.draw(canvas, sheet);

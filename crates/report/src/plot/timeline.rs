@@ -1,4 +1,4 @@
-//! What is drawn over time: lines that a gap interrupts, bands, stretches that a flag marks.
+//! Drawing over time: lines that a gap interrupts, bands, stretches that a flag marks.
 //!
 //! The fit's residual, a prediction and the strips of the diagnosis page share it; other pages take it from here, as
 //! `pam_report::plot::Timeline`.

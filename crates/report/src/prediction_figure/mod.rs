@@ -5,7 +5,7 @@
 //! | a     | measured and modelled force over time, with the band in which the force is to be expected |
 //! | b     | residual over time against that band, with the samples that are not counted               |
 //! | c     | pressures and lengths of the recording beside those that the model was identified on      |
-//! | d     | measured against modelled force, by density                                               |
+//! | d     | residual against modelled force, by density                                               |
 //!
 //! Where no force was recorded, b and d are left out.
 
@@ -23,7 +23,7 @@ use crate::plot::{Anchor, Canvas, Color, Rect, palette};
 pub struct PredictionFigure {
     /// Headline.
     pub title: String,
-    /// What it says in numbers.
+    /// Its statement in numbers.
     pub facts: Vec<String>,
     /// Time, in s.
     pub time_s: Vec<f64>,

@@ -40,8 +40,7 @@ pub(super) fn residual(canvas: &mut Canvas<'_>, cell: Rect, figure: &PredictionF
     let line = Timeline { time_s: &figure.time_s };
     let residual_n: Vec<f64> =
         figure.force_n.iter().zip(&figure.model_n).map(|(force_n, model_n)| force_n - model_n).collect();
-    let sizes: Vec<f64> = residual_n.iter().map(|residual_n| residual_n.abs()).collect();
-    let limit = 1.15 * quantile(&sizes, 0.998).max(1.2 * quantile(&figure.half_width_n, 0.5));
+    let limit = residual_limit(figure);
     let panel = panel(cell, figure, ("residual (N)", -limit, limit));
     panel.draw_frame(canvas);
     line.shade(canvas, &panel, |row| figure.extrapolated[row], EXTRAPOLATED);
@@ -59,6 +58,13 @@ pub(super) fn residual(canvas: &mut Canvas<'_>, cell: Rect, figure: &PredictionF
     }
     let (y, _) = title(canvas, cell, "b", "Residual");
     legend(canvas, &keys, cell.right - 16.0, y);
+}
+
+/// Largest residual that is shown, in N: single spikes, or a model that runs away, must not flatten all the rest.
+pub(super) fn residual_limit(figure: &PredictionFigure) -> f64 {
+    let sizes = figure.force_n.iter().zip(&figure.model_n).map(|(force_n, model_n)| (force_n - model_n).abs());
+    let sizes: Vec<f64> = sizes.collect();
+    1.15 * quantile(&sizes, 0.998).max(1.2 * quantile(&figure.half_width_n, 0.5))
 }
 
 fn panel(cell: Rect, figure: &PredictionFigure, (name, low, high): (&str, f64, f64)) -> Panel {

@@ -252,7 +252,7 @@ fn every_memory_is_finite_along_a_random_path() {
 
 #[test]
 fn without_a_muscle_to_pull_there_is_little_to_add() {
-    // What derives from eq. 11 alone vanishes with it.
+    // Force derived from eq. 11 alone vanishes with it.
     for id in ["stribeck", "load-dependent-friction", "pressure-creep", "fatigue-wear", "thermal-softening"] {
         let effect = effect(id).expect("an id of the catalogue");
         let mut memory = effect.start(&nominal(), &shapes_of(effect)[0]);
