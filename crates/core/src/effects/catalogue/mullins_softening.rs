@@ -5,9 +5,9 @@
 //! ε_m = max ε so far,   s = ∫ |dε|,   f = V_r dW/dL of latex
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -29,15 +29,27 @@ impl Effect for MullinsSoftening {
 
     fn shape(&self) -> &'static [Shape] {
         &[
-            Shape { name: "softening_contraction", unit: "1", range: (3e-3, IN_PROPORTION), grid: &[0.01, 0.03, 0.1] },
-            Shape { name: "settling_travel", unit: "1", range: (SETTLES_AT_ONCE, 5.0), grid: &[0.2, 0.8] },
+            Shape {
+                name: "softening_contraction",
+                symbol: "ε_c",
+                unit: "1",
+                range: (3e-3, IN_PROPORTION),
+                grid: &[0.01, 0.03, 0.1],
+            },
+            Shape {
+                name: "settling_travel",
+                symbol: "s_c",
+                unit: "1",
+                range: (SETTLES_AT_ONCE, 5.0),
+                grid: &[0.2, 0.8],
+            },
         ]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
-            Amplitude { name: "softening", unit: "1", range: (0.0, 1.5) },
-            Amplitude { name: "settling", unit: "1", range: (0.0, 1.5) },
+            Amplitude { name: "softening", symbol: "d", unit: "1", range: (0.0, 1.5) },
+            Amplitude { name: "settling", symbol: "e", unit: "1", range: (0.0, 1.5) },
         ]
     }
 
@@ -169,12 +181,15 @@ static PAGE: Page = Page {
     test: "a staircase of largest contractions of 5, 10, 15 and 20 %, three cycles each; the staircase again; rest; again",
     protocol: "run-in",
     coordinate: Coordinate::Cycle,
+    typical: Typical { shapes: &[&[0.03, 0.5]], amplitudes: &[0.06, 0.06] },
+    regions: &[],
+    drivers: &["contraction"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     #[test]

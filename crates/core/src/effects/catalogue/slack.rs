@@ -7,9 +7,9 @@
 //! A slack muscle is a column with a bow. Under a load `h` beyond its buckling load the bow shrinks as `1/h` (Timoshenko and
 //! Gere, 1961, "Theory of Elastic Stability"), and with its square the length that it takes from the muscle between its ends.
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Effect, Kind, Memory, Role, Seen, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Effect, Kind, Memory, Role, Seen, Shape};
 use crate::muscle::Muscle;
 
 /// Lowest and highest floor, in N: what is hung on the cell, with its tare.
@@ -51,8 +51,8 @@ impl Effect for Slack {
 
     fn shape(&self) -> &'static [Shape] {
         &[
-            Shape { name: "floor_n", unit: "N", range: RANGE_N, grid: &[0.0] },
-            Shape { name: "softness_n", unit: "N", range: (0.0, 60.0), grid: &[0.0] },
+            Shape { name: "floor_n", symbol: "F_floor", unit: "N", range: RANGE_N, grid: &[0.0] },
+            Shape { name: "softness_n", symbol: "w", unit: "N", range: (0.0, 60.0), grid: &[0.0] },
         ]
     }
 
@@ -159,6 +159,9 @@ static PAGE: Page = Page {
     test: "vent the muscle at every length and watch for a force that stays flat; keep a preload and it is gone",
     protocol: "isometric-ramps",
     coordinate: Coordinate::Force,
+    typical: Typical { shapes: &[&[0.0, 0.0]], amplitudes: &[] },
+    regions: &[Coordinate::Force, Coordinate::Pressure],
+    drivers: &["contraction", "force"],
 };
 
 #[cfg(test)]

@@ -4,10 +4,10 @@
 //! p_m = p + b z,   z = Maxwell slip over r on p,   F = F_base + b z ∂F/∂p
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::slip::Follower;
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::slip::Follower;
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -32,11 +32,11 @@ impl Effect for PressureGaugeHysteresis {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "slip_pressure_pa", unit: "Pa", range: (2e2, 1e5), grid: &[1e3, 3e3, 1e4, 3e4] }]
+        &[Shape { name: "slip_pressure_pa", symbol: "r", unit: "Pa", range: (2e2, 1e5), grid: &[1e3, 3e3, 1e4, 3e4] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "width_pa", unit: "Pa", range: (0.0, 3e4) }]
+        &[Amplitude { name: "width_pa", symbol: "b", unit: "Pa", range: (0.0, 3e4) }]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
@@ -93,12 +93,15 @@ static PAGE: Page = Page {
     test: "slow isometric ramps up and down at two rates; a second gauge of another make in parallel",
     protocol: "isometric-ramps",
     coordinate: Coordinate::TravelSinceReversal,
+    typical: Typical { shapes: &[&[1e4]], amplitudes: &[2e3] },
+    regions: &[],
+    drivers: &["pressure"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     fn at(pressure_pa: f64) -> Moment {

@@ -4,9 +4,9 @@
 //! F = F_base - c (p / p_ref)^m v
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// Pressure at which the coefficient is stated, in Pa.
@@ -35,8 +35,8 @@ impl Effect for ViscousDamping {
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
-            Amplitude { name: "damping_n_s_per_m", unit: "N s/m", range: (0.0, 5e3) },
-            Amplitude { name: "damping_with_pressure_n_s_per_m", unit: "N s/m", range: (0.0, 5e3) },
+            Amplitude { name: "damping_n_s_per_m", symbol: "c₀", unit: "N s/m", range: (0.0, 5e3) },
+            Amplitude { name: "damping_with_pressure_n_s_per_m", symbol: "c₁", unit: "N s/m", range: (0.0, 5e3) },
         ]
     }
 
@@ -77,4 +77,7 @@ static PAGE: Page = Page {
     test: "isobaric triangles at five speeds from 0.5 to 50 mm/s: the width of the loop grows in proportion to the speed",
     protocol: "rate-ladder",
     coordinate: Coordinate::Speed,
+    typical: Typical { shapes: &[&[]], amplitudes: &[100.0, 100.0] },
+    regions: &[],
+    drivers: &["speed"],
 };

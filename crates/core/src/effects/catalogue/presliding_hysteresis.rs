@@ -7,10 +7,10 @@
 //! Where the length stands still, the strands slide under pressure by κ times what their stretch makes (eq. 2); a muscle whose
 //! friction is held has κ = 0.
 
-use super::page::{Confusion, Page, Symbol};
-use super::slip::Follower;
-use super::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::slip::Follower;
+use crate::effects::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -34,11 +34,12 @@ impl Effect for PreslidingHysteresis {
         &[
             Shape {
                 name: "slip_distance_m",
+                symbol: "δ",
                 unit: "m",
                 range: (2e-4, 2e-2),
                 grid: &[2e-4, 5e-4, 1e-3, 2e-3, 4e-3, 8e-3],
             },
-            Shape { name: "slide_at_rest", unit: "1", range: (0.0, 20.0), grid: &[0.0, 1.0] },
+            Shape { name: "slide_at_rest", symbol: "κ", unit: "1", range: (0.0, 20.0), grid: &[0.0, 1.0] },
         ]
     }
 
@@ -105,4 +106,7 @@ static PAGE: Page = Page {
     test: "nested minor loops of 10, 5, 2 and 1 mm at constant pressure, at two speeds",
     protocol: "minor-loops",
     coordinate: Coordinate::TravelSinceReversal,
+    typical: Typical { shapes: &[&[1e-3, 1.0]], amplitudes: &[] },
+    regions: &[Coordinate::TravelSinceReversal],
+    drivers: &["travel-since-reversal", "contraction"],
 };

@@ -4,9 +4,9 @@
 //! F = F_base - d f T - e f θ,   τ dT/dt = P / P_ref - T,   P = p π D L |v|,   f = V_r dW/dL of latex
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// `P_ref`, in W per unit of `f'`: 1 W of friction where `f'` is 1e-3.
@@ -37,13 +37,13 @@ impl Effect for ThermalSoftening {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "time_constant_s", unit: "s", range: (20.0, 3e3), grid: &[60.0, 200.0, 600.0] }]
+        &[Shape { name: "time_constant_s", symbol: "τ", unit: "s", range: (20.0, 3e3), grid: &[60.0, 200.0, 600.0] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
-            Amplitude { name: "softening_per_kilowatt", unit: "1", range: (-MOST, MOST) },
-            Amplitude { name: "softening_per_kelvin", unit: "1/K", range: (-MOST_PER_K, MOST_PER_K) },
+            Amplitude { name: "softening_per_kilowatt", symbol: "d", unit: "1", range: (-MOST, MOST) },
+            Amplitude { name: "softening_per_kelvin", symbol: "e", unit: "1/K", range: (-MOST_PER_K, MOST_PER_K) },
         ]
     }
 
@@ -141,12 +141,15 @@ static PAGE: Page = Page {
            logged",
     protocol: "endurance",
     coordinate: Coordinate::Time,
+    typical: Typical { shapes: &[&[400.0]], amplitudes: &[0.1, 0.0] },
+    regions: &[],
+    drivers: &["time", "cycle"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     /// One kilowatt of `p π D L |v|`.

@@ -4,9 +4,9 @@
 //! p_e = h(p) - h(0),   h(p) = ½ [(p - p_th) + √((p - p_th)² + w²)],   w = 10 kPa
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// `w`: over what pressure the bladder comes to lie on the braid, in Pa.
@@ -38,7 +38,13 @@ impl Effect for ThresholdPressure {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "threshold_pa", unit: "Pa", range: (1e3, 2e5), grid: &[5e3, 1e4, 2e4, 3.5e4, 5e4, 7e4, 9e4] }]
+        &[Shape {
+            name: "threshold_pa",
+            symbol: "p_th",
+            unit: "Pa",
+            range: (1e3, 2e5),
+            grid: &[5e3, 1e4, 2e4, 3.5e4, 5e4, 7e4, 9e4],
+        }]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
@@ -106,12 +112,15 @@ static PAGE: Page = Page {
     test: "isometric ramps from a vented muscle at five lengths, 10 kPa/s below 120 kPa; the gauge's zero while vented",
     protocol: "isometric-ramps",
     coordinate: Coordinate::Pressure,
+    typical: Typical { shapes: &[&[3e4]], amplitudes: &[] },
+    regions: &[Coordinate::Pressure],
+    drivers: &["pressure"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::still;
     use super::*;
+    use crate::effects::moment::tests::still;
     use crate::muscle::tests::nominal;
 
     fn seen_pa(threshold_pa: f64, pressure_pa: f64) -> f64 {

@@ -4,9 +4,9 @@
 //! F = F_base - s f_r p π D L ln(1 + |v| / v₀)
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -27,11 +27,17 @@ impl Effect for RateDependentHysteresis {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "onset_speed_m_per_s", unit: "m/s", range: (1e-5, 5e-2), grid: &[1e-4, 1e-3, 1e-2] }]
+        &[Shape {
+            name: "onset_speed_m_per_s",
+            symbol: "v₀",
+            unit: "m/s",
+            range: (1e-5, 5e-2),
+            grid: &[1e-4, 1e-3, 1e-2],
+        }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "friction_per_e_fold", unit: "1", range: (0.0, 0.01) }]
+        &[Amplitude { name: "friction_per_e_fold", symbol: "f_r", unit: "1", range: (0.0, 0.01) }]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
@@ -92,12 +98,15 @@ static PAGE: Page = Page {
     test: "isobaric triangles at five speeds from 0.5 to 50 mm/s and two pressures",
     protocol: "rate-ladder",
     coordinate: Coordinate::Speed,
+    typical: Typical { shapes: &[&[3e-4]], amplitudes: &[1e-4] },
+    regions: &[],
+    drivers: &["speed"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     #[test]

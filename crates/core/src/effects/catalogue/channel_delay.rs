@@ -6,9 +6,9 @@
 //!
 //! with the delays of pressure and length behind the force. Only two delays of three channels can be found.
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Effect, Kind, Memory, Role, Seen, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Effect, Kind, Memory, Role, Seen, Shape};
 use crate::muscle::Muscle;
 
 /// Delays that a fit tries first, either sign, in s.
@@ -33,8 +33,20 @@ impl Effect for ChannelDelay {
 
     fn shape(&self) -> &'static [Shape] {
         &[
-            Shape { name: "pressure_delay_s", unit: "s", range: (-0.2, 0.2), grid: &[-0.02, -0.005, 0.0, 0.005, 0.02] },
-            Shape { name: "length_delay_s", unit: "s", range: (-0.2, 0.2), grid: &[-0.02, -0.005, 0.0, 0.005, 0.02] },
+            Shape {
+                name: "pressure_delay_s",
+                symbol: "d_p",
+                unit: "s",
+                range: (-0.2, 0.2),
+                grid: &[-0.02, -0.005, 0.0, 0.005, 0.02],
+            },
+            Shape {
+                name: "length_delay_s",
+                symbol: "d_L",
+                unit: "s",
+                range: (-0.2, 0.2),
+                grid: &[-0.02, -0.005, 0.0, 0.005, 0.02],
+            },
         ]
     }
 
@@ -103,6 +115,9 @@ static PAGE: Page = Page {
     test: "a tap that shows in force and length at zero pressure; an isometric pressure chirp from 0.05 to 10 Hz",
     protocol: "pressure-chirp",
     coordinate: Coordinate::Speed,
+    typical: Typical { shapes: &[&[0.02, 0.0], &[0.0, 0.02], &[0.02, 0.02]], amplitudes: &[] },
+    regions: &[],
+    drivers: &["pressure", "speed"],
 };
 
 #[cfg(test)]

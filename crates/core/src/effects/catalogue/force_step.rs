@@ -8,9 +8,9 @@
 //! Where nobody has set the force to zero since, the step goes on in every recording after it. The model then is that of the muscle
 //! and its cell as they are now, and holds for any other recording as it stands.
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Seen, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Seen, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -32,13 +32,13 @@ impl Effect for ForceStep {
 
     fn shape(&self) -> &'static [Shape] {
         &[
-            Shape { name: "recording", unit: "1", range: (0.0, 1e6), grid: &[0.0] },
-            Shape { name: "instant_s", unit: "s", range: (0.0, 1e7), grid: &[0.0] },
+            Shape { name: "recording", symbol: "recording", unit: "1", range: (0.0, 1e6), grid: &[0.0] },
+            Shape { name: "instant_s", symbol: "t₀", unit: "s", range: (0.0, 1e7), grid: &[0.0] },
         ]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "step_n", unit: "N", range: (-500.0, 500.0) }]
+        &[Amplitude { name: "step_n", symbol: "A", unit: "N", range: (-500.0, 500.0) }]
     }
 
     fn keeps(&self) -> &'static [Kept] {
@@ -117,12 +117,15 @@ static PAGE: Page = Page {
     test: "vented and slack before and after the recording, and repeat it: a step does not come back",
     protocol: "null",
     coordinate: Coordinate::Time,
+    typical: Typical { shapes: &[], amplitudes: &[2.0] },
+    regions: &[Coordinate::Time],
+    drivers: &["time"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     #[test]

@@ -4,9 +4,9 @@
 //! F = F_base + d t + w (1 - exp(-t / τ))
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -27,13 +27,13 @@ impl Effect for ForceDrift {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "warm_up_s", unit: "s", range: (20.0, 4e3), grid: &[30.0, 120.0, 400.0] }]
+        &[Shape { name: "warm_up_s", symbol: "τ", unit: "s", range: (20.0, 4e3), grid: &[30.0, 120.0, 400.0] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
-            Amplitude { name: "drift_n_per_s", unit: "N/s", range: (-0.5, 0.5) },
-            Amplitude { name: "warm_up_n", unit: "N", range: (-50.0, 50.0) },
+            Amplitude { name: "drift_n_per_s", symbol: "d", unit: "N/s", range: (-0.5, 0.5) },
+            Amplitude { name: "warm_up_n", symbol: "w", unit: "N", range: (-50.0, 50.0) },
         ]
     }
 
@@ -109,12 +109,16 @@ static PAGE: Page = Page {
     test: "ten minutes with the muscle vented and slack, before and after the recordings",
     protocol: "null",
     coordinate: Coordinate::Time,
+    // 1 N per hour and 2 N.
+    typical: Typical { shapes: &[&[120.0]], amplitudes: &[1.0 / 3600.0, 2.0] },
+    regions: &[Coordinate::Time],
+    drivers: &["time"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     #[test]

@@ -4,9 +4,9 @@
 //! F = F_base - d F_gas (s / s_ref)^γ,   s = ∫ |dx|
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// `s_ref`, in m: some thousand cycles of 50 mm.
@@ -32,11 +32,11 @@ impl Effect for FatigueWear {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "exponent", unit: "1", range: (0.2, 1.5), grid: &[0.5, 1.0] }]
+        &[Shape { name: "exponent", symbol: "γ", unit: "1", range: (0.2, 1.5), grid: &[0.5, 1.0] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "loss_per_reference_travel", unit: "1", range: (0.0, 1.0) }]
+        &[Amplitude { name: "loss_per_reference_travel", symbol: "d", unit: "1", range: (0.0, 1.0) }]
     }
 
     fn outlasts(&self) -> bool {
@@ -126,12 +126,15 @@ static PAGE: Page = Page {
     test: "three hundred cycles at two pressures in turn, with a vented and slack pause before and after",
     protocol: "endurance",
     coordinate: Coordinate::Time,
+    typical: Typical { shapes: &[&[0.5], &[1.0]], amplitudes: &[0.02] },
+    regions: &[],
+    drivers: &["cycle", "time"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     fn cycled(memory: &mut dyn Memory, stroke_m: f64, n_turns: usize) -> f64 {

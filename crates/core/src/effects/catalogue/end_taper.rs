@@ -17,9 +17,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::{Kinematics, Muscle};
 
 /// The effect.
@@ -49,8 +49,8 @@ impl Effect for EndTaper {
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
-            Amplitude { name: "cotangent_of_taper", unit: "1", range: (-20.0, 20.0) },
-            Amplitude { name: "bulge_of_taper", unit: "1", range: (-40.0, 40.0) },
+            Amplitude { name: "cotangent_of_taper", symbol: "1/tan β", unit: "1", range: (-20.0, 20.0) },
+            Amplitude { name: "bulge_of_taper", symbol: "c", unit: "1", range: (-40.0, 40.0) },
         ]
     }
 
@@ -113,12 +113,15 @@ static PAGE: Page = Page {
     test: "photograph the muscle under pressure at several lengths; two muscles of different length with the same fittings",
     protocol: "isobaric-triangles",
     coordinate: Coordinate::Contraction,
+    typical: Typical { shapes: &[&[]], amplitudes: &[1.0, 0.0] },
+    regions: &[],
+    drivers: &["contraction"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
     use std::f64::consts::PI;
 

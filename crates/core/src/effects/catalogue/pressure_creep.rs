@@ -7,10 +7,10 @@
 //!
 //! With `s = 0` inflation alone drives it; with `s = 1` so does a change of the length under pressure.
 
-use super::page::{Confusion, Page, Symbol};
-use super::prony::Overstress;
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::prony::Overstress;
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// Pressure below which the force of the gas says nothing of the area that it pulls on, in Pa.
@@ -39,16 +39,22 @@ impl Effect for PressureCreep {
 
     fn shape(&self) -> &'static [Shape] {
         &[
-            Shape { name: "time_constant_s", unit: "s", range: (0.02, 300.0), grid: &[0.03, 0.2, 1.0, 6.0] },
-            Shape { name: "share_of_length", unit: "1", range: (0.0, 1.0), grid: &[0.0, 1.0] },
+            Shape {
+                name: "time_constant_s",
+                symbol: "τ",
+                unit: "s",
+                range: (0.02, 300.0),
+                grid: &[0.03, 0.2, 1.0, 6.0],
+            },
+            Shape { name: "share_of_length", symbol: "s", unit: "1", range: (0.0, 1.0), grid: &[0.0, 1.0] },
         ]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
-            Amplitude { name: "overstress", unit: "1", range: (-0.5, 0.5) },
-            Amplitude { name: "slow_overstress", unit: "1", range: (-0.5, 0.5) },
-            Amplitude { name: "slowest_overstress", unit: "1", range: (-0.5, 0.5) },
+            Amplitude { name: "overstress", symbol: "g₁", unit: "1", range: (-0.5, 0.5) },
+            Amplitude { name: "slow_overstress", symbol: "g₂", unit: "1", range: (-0.5, 0.5) },
+            Amplitude { name: "slowest_overstress", symbol: "g₃", unit: "1", range: (-0.5, 0.5) },
         ]
     }
 
@@ -126,12 +132,15 @@ static PAGE: Page = Page {
     test: "isometric steps of the pressure up and down, with holds of a minute, and the valve closed",
     protocol: "pressure-steps",
     coordinate: Coordinate::TimeSinceLastMove,
+    typical: Typical { shapes: &[&[3.0, 0.0], &[3.0, 1.0]], amplitudes: &[0.025, 0.025, 0.025] },
+    regions: &[],
+    drivers: &["pressure", "time-since-pressure-moved", "time-since-last-move"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     #[test]

@@ -4,10 +4,10 @@
 //! F = F_base - W z,   z = Maxwell slip over δ
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::slip::Follower;
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::slip::Follower;
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -28,11 +28,17 @@ impl Effect for RubberHysteresis {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "slip_distance_m", unit: "m", range: (1e-4, 3e-2), grid: &[5e-4, 1e-3, 2e-3, 5e-3, 1e-2] }]
+        &[Shape {
+            name: "slip_distance_m",
+            symbol: "δ",
+            unit: "m",
+            range: (1e-4, 3e-2),
+            grid: &[5e-4, 1e-3, 2e-3, 5e-3, 1e-2],
+        }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "width_n", unit: "N", range: (0.0, 200.0) }]
+        &[Amplitude { name: "width_n", symbol: "W", unit: "N", range: (0.0, 200.0) }]
     }
 
     fn start(&self, muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
@@ -96,12 +102,15 @@ static PAGE: Page = Page {
     test: "minor loops of 10, 5, 2 and 1 mm at low and at high pressure, with holds of ten seconds at the reversals",
     protocol: "minor-loops",
     coordinate: Coordinate::TravelSinceReversal,
+    typical: Typical { shapes: &[&[2e-3]], amplitudes: &[5.0] },
+    regions: &[],
+    drivers: &["contraction", "travel-since-reversal"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     fn moved(contracted_m: f64) -> Moment {

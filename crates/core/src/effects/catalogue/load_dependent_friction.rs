@@ -4,9 +4,9 @@
 //! F = F_base - s μΘ max(F_static, 0)
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -35,7 +35,7 @@ impl Effect for LoadDependentFriction {
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "friction_per_load", unit: "1", range: (0.0, 1.0) }]
+        &[Amplitude { name: "friction_per_load", symbol: "μΘ", unit: "1", range: (0.0, 1.0) }]
     }
 
     fn start(&self, _muscle: &Muscle, _shape: &[f64]) -> Box<dyn Memory> {
@@ -92,12 +92,15 @@ static PAGE: Page = Page {
     test: "pressure triangles under several constant loads: the width of the loop follows the load",
     protocol: "isotonic",
     coordinate: Coordinate::Force,
+    typical: Typical { shapes: &[&[]], amplitudes: &[0.03] },
+    regions: &[],
+    drivers: &["force", "pressure"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     #[test]

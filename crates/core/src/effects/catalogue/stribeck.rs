@@ -8,9 +8,9 @@
 //! speed leaves it small until the next move, as a rest does not push; contacts that age at once follow the static curve of
 //! Stribeck, whose friction at rest is the largest.
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// Travel over which contacts are renewed, in m: an assumption. It lets friction remember the speed that it came from (the
@@ -41,17 +41,24 @@ impl Effect for Stribeck {
         &[
             Shape {
                 name: "stribeck_speed_m_per_s",
+                symbol: "v_s",
                 unit: "m/s",
                 range: (3e-4, 5e-2),
                 grid: &[1e-3, 2e-3, 5e-3, 1e-2, 2e-2],
             },
-            Shape { name: "exponent", unit: "1", range: (0.5, 2.5), grid: &[1.0, 2.0] },
-            Shape { name: "aging_per_s", unit: "1/s", range: (0.0, AT_ONCE_PER_S), grid: &[0.0, 1.0, AT_ONCE_PER_S] },
+            Shape { name: "exponent", symbol: "n", unit: "1", range: (0.5, 2.5), grid: &[1.0, 2.0] },
+            Shape {
+                name: "aging_per_s",
+                symbol: "a",
+                unit: "1/s",
+                range: (0.0, AT_ONCE_PER_S),
+                grid: &[0.0, 1.0, AT_ONCE_PER_S],
+            },
         ]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "static_friction", unit: "1", range: (0.0, 0.02) }]
+        &[Amplitude { name: "static_friction", symbol: "f_s", unit: "1", range: (0.0, 0.02) }]
     }
 
     /// The exponent and the aging may.
@@ -147,12 +154,16 @@ static PAGE: Page = Page {
     test: "isobaric triangles at five speeds from 0.5 to 50 mm/s: the width of the loop falls with the speed",
     protocol: "rate-ladder",
     coordinate: Coordinate::Speed,
+    // Half of an f' of 1.2e-3.
+    typical: Typical { shapes: &[&[5e-3, 1.0, 0.0]], amplitudes: &[6e-4] },
+    regions: &[Coordinate::Speed],
+    drivers: &["speed"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     #[test]

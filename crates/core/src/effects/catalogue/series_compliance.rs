@@ -7,9 +7,9 @@
 //! In a simulation `F` is the force a moment ago, which settles where `c` times the stiffness of the muscle is
 //! below one.
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -37,14 +37,15 @@ impl Effect for SeriesCompliance {
         &[
             Shape {
                 name: "compliance_m_per_n",
+                symbol: "c",
                 unit: "m/N",
                 range: (1e-7, 1e-4),
                 // 800, 400, 200, 100, 50 and 25 N/mm.
                 grid: &[1.25e-6, 2.5e-6, 5e-6, 1e-5, 2e-5, 4e-5],
             },
-            Shape { name: "sliding_share", unit: "1", range: (0.0, 1.0), grid: &[0.0, 1.0] },
+            Shape { name: "sliding_share", symbol: "s", unit: "1", range: (0.0, 1.0), grid: &[0.0, 1.0] },
             // Linear, and a cable that is twice as stiff under 100 N.
-            Shape { name: "hardening_per_n", unit: "1/N", range: (0.0, 0.1), grid: &[0.0, 0.01] },
+            Shape { name: "hardening_per_n", symbol: "q", unit: "1/N", range: (0.0, 0.1), grid: &[0.0, 0.01] },
         ]
     }
 
@@ -152,12 +153,16 @@ static PAGE: Page = Page {
     test: "a rod in the place of the muscle, pulled from 0 to 500 N while the length is recorded",
     protocol: "isometric-ramps",
     coordinate: Coordinate::Force,
+    // 100 N/mm.
+    typical: Typical { shapes: &[&[1e-5, 1.0, 0.0]], amplitudes: &[] },
+    regions: &[],
+    drivers: &["force"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::still;
     use super::*;
+    use crate::effects::moment::tests::still;
     use crate::muscle::tests::nominal;
 
     #[test]

@@ -4,10 +4,10 @@
 //! F = F_base + Σ g_i (f - q_i),   τ_i dq_i/dt = f - q_i,   f = V_r dW/dL of latex,   τ_i = τ, 10 τ, 100 τ
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::prony::Overstress;
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::prony::Overstress;
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -28,14 +28,16 @@ impl Effect for ViscoelasticRelaxation {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "time_constant_s", unit: "s", range: (0.02, 300.0), grid: &[0.03, 0.2, 1.0, 6.0] }]
+        &[Shape {
+            name: "time_constant_s", symbol: "τ", unit: "s", range: (0.02, 300.0), grid: &[0.03, 0.2, 1.0, 6.0]
+        }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
-            Amplitude { name: "overstress", unit: "1", range: (0.0, 2.0) },
-            Amplitude { name: "slow_overstress", unit: "1", range: (0.0, 2.0) },
-            Amplitude { name: "slowest_overstress", unit: "1", range: (0.0, 2.0) },
+            Amplitude { name: "overstress", symbol: "g₁", unit: "1", range: (0.0, 2.0) },
+            Amplitude { name: "slow_overstress", symbol: "g₂", unit: "1", range: (0.0, 2.0) },
+            Amplitude { name: "slowest_overstress", symbol: "g₃", unit: "1", range: (0.0, 2.0) },
         ]
     }
 
@@ -95,12 +97,15 @@ static PAGE: Page = Page {
     test: "isobaric steps of the length up and down, with holds of a minute and one of half an hour",
     protocol: "length-steps",
     coordinate: Coordinate::TimeSinceLastMove,
+    typical: Typical { shapes: &[&[3.0]], amplitudes: &[0.1, 0.1, 0.1] },
+    regions: &[],
+    drivers: &["contraction", "time-since-last-move"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     #[test]

@@ -4,17 +4,23 @@
 //! F = F_base - K w ln(1 + exp((ε - ε_l) / w))
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Seen, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Seen, Shape};
 use crate::muscle::Muscle;
 
 /// Where a fit looks for the lock, in units of the largest contraction.
 const SHARES: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
 static SHAPE: &[Shape] = &[
-    Shape { name: "lock_contraction", unit: "1", range: (0.1, 0.5), grid: &[0.12, 0.16, 0.2, 0.24, 0.28] },
-    Shape { name: "onset_contraction", unit: "1", range: (1e-3, 0.05), grid: &[0.004, 0.015] },
+    Shape {
+        name: "lock_contraction",
+        symbol: "ε_l",
+        unit: "1",
+        range: (0.1, 0.5),
+        grid: &[0.12, 0.16, 0.2, 0.24, 0.28],
+    },
+    Shape { name: "onset_contraction", symbol: "w", unit: "1", range: (1e-3, 0.05), grid: &[0.004, 0.015] },
 ];
 
 /// The effect.
@@ -47,7 +53,7 @@ impl Effect for BraidLockup {
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "stiffness_n", unit: "N", range: (0.0, 1e6) }]
+        &[Amplitude { name: "stiffness_n", symbol: "K", unit: "N", range: (0.0, 1e6) }]
     }
 
     fn first_shapes(&self, seen: &Seen) -> Vec<Vec<f64>> {
@@ -119,12 +125,15 @@ static PAGE: Page = Page {
     test: "slow isobaric strokes to the largest contraction at three pressures",
     protocol: "isobaric-triangles",
     coordinate: Coordinate::Contraction,
+    typical: Typical { shapes: &[&[0.2, 0.008]], amplitudes: &[1e4] },
+    regions: &[Coordinate::Contraction],
+    drivers: &["contraction"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     fn column(contraction_ratio: f64) -> f64 {

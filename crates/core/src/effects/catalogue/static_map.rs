@@ -8,9 +8,9 @@
 //! go from -1 to 1 over what was seen; beyond, the map keeps its value at the rim. The first sum goes to the fourth degree in
 //! both together, the second to the second.
 
-use super::page::{Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// Highest degree of the sum that is the same in both directions, and of the one with the sign of friction.
@@ -44,11 +44,11 @@ pub fn scaled(value: f64, low: f64, high: f64) -> f64 {
 }
 
 const fn map(name: &'static str) -> Amplitude {
-    Amplitude { name, unit: "N", range: (-1e4, 1e4) }
+    Amplitude { name, symbol: "a_ij, b_ij", unit: "N", range: (-1e4, 1e4) }
 }
 
 const fn rim(name: &'static str, unit: &'static str, range: (f64, f64)) -> Shape {
-    Shape { name, unit, range, grid: &[0.0] }
+    Shape { name, symbol: "p̂, ε̂", unit, range, grid: &[0.0] }
 }
 
 const RIMS: &[Shape] = &[
@@ -150,12 +150,15 @@ static PAGE: Page = Page {
     test: "the same pressures and lengths at other speeds and on another day: the map stays",
     protocol: "isobaric-triangles",
     coordinate: Coordinate::Contraction,
+    typical: Typical::UNKNOWN,
+    regions: &[],
+    drivers: &[],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     const SHAPE: [f64; 4] = [0.0, 4e5, 0.0, 0.2];

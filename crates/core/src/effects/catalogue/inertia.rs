@@ -8,9 +8,9 @@
 
 use std::f64::consts::TAU;
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// Beyond which a mount is rigid, in Hz.
@@ -35,11 +35,11 @@ impl Effect for Inertia {
 
     fn shape(&self) -> &'static [Shape] {
         // Below, a mount is so soft that its mass looks like damping.
-        &[Shape { name: "mount_hz", unit: "Hz", range: (12.0, RIGID_HZ), grid: &[25.0, RIGID_HZ] }]
+        &[Shape { name: "mount_hz", symbol: "f", unit: "Hz", range: (12.0, RIGID_HZ), grid: &[25.0, RIGID_HZ] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "mass_kg", unit: "kg", range: (-30.0, 30.0) }]
+        &[Amplitude { name: "mass_kg", symbol: "m", unit: "kg", range: (-30.0, 30.0) }]
     }
 
     /// A rigid mount.
@@ -133,12 +133,15 @@ static PAGE: Page = Page {
     test: "isobaric length chirp from 0.05 to 8 Hz at two pressures; or the fixture without the muscle",
     protocol: "length-chirp",
     coordinate: Coordinate::Speed,
+    typical: Typical { shapes: &[&[25.0]], amplitudes: &[0.5] },
+    regions: &[],
+    drivers: &["speed"],
 };
 
 #[cfg(test)]
 mod tests {
-    use super::super::moment::tests::{base, pull, still};
     use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
     use crate::muscle::tests::nominal;
 
     #[test]

@@ -4,9 +4,10 @@
 //! τ dp_m/dt = p - p_m
 //! ```
 
-use super::page::{Confusion, Page, Symbol};
-use super::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::artifact::diagnosis::Coordinate;
+use crate::effects::lag::Lag;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -27,35 +28,28 @@ impl Effect for PressureLag {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "time_constant_s", unit: "s", range: (1e-3, 1.0), grid: &[0.01, 0.02, 0.04, 0.08, 0.16, 0.32] }]
+        &[Shape {
+            name: "time_constant_s",
+            symbol: "τ",
+            unit: "s",
+            range: (1e-3, 1.0),
+            grid: &[0.01, 0.02, 0.04, 0.08, 0.16, 0.32],
+        }]
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { time_constant_s: shape[0], last_pa: 0.0, muscle_pa: None })
+        Box::new(State { time_constant_s: shape[0], muscle_pa: Lag::default() })
     }
 }
 
 struct State {
     time_constant_s: f64,
-    last_pa: f64,
-    muscle_pa: Option<f64>,
+    muscle_pa: Lag,
 }
 
 impl Memory for State {
     fn sees(&mut self, now: &mut Moment) {
-        let muscle_pa = match self.muscle_pa {
-            Some(muscle_pa) if now.step_s > 0.0 => {
-                // Exact for a gauge pressure that moves evenly between the moments.
-                let ratio = now.step_s / self.time_constant_s;
-                let decay = (-ratio).exp();
-                let slope_pa = (now.pressure_pa - self.last_pa) / ratio;
-                now.pressure_pa - slope_pa + (muscle_pa - self.last_pa + slope_pa) * decay
-            }
-            _ => now.pressure_pa,
-        };
-        self.last_pa = now.pressure_pa;
-        self.muscle_pa = Some(muscle_pa);
-        now.pressure_pa = muscle_pa;
+        now.pressure_pa = self.muscle_pa.follow(now.pressure_pa, now.step_s, self.time_constant_s);
     }
 }
 
@@ -89,4 +83,7 @@ static PAGE: Page = Page {
     test: "isometric pressure chirp from 0.05 to 10 Hz",
     protocol: "pressure-chirp",
     coordinate: Coordinate::TimeSinceLastMove,
+    typical: Typical { shapes: &[&[0.06]], amplitudes: &[] },
+    regions: &[],
+    drivers: &["pressure"],
 };
