@@ -9,7 +9,8 @@ use std::ops::Range;
 
 use pam_core::force::columns::{ForceColumns, N_COLUMNS};
 use pam_core::recording::CHUNK_ROWS;
-use pam_optim::summary::{BLOCK_ROWS, Summary};
+use pam_optim::gathered::Gathered;
+use pam_optim::summary::Summary;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;
@@ -103,10 +104,8 @@ fn condense_stretch(
     weight: Option<&SampleWeight<'_>>,
 ) -> std::io::Result<Summary> {
     let width = columns.n_columns() + 1;
-    let mut summary = Summary::new(columns.n_columns());
-    let mut block = vec![0.0; BLOCK_ROWS * width];
+    let mut gathered = Gathered::new(columns.n_columns());
     let mut row = vec![0.0; width];
-    let mut filled = 0;
     let mut next = rows.start.next_multiple_of(stride);
     for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
         let chunk = prepared.recording.samples.chunk(index)?;
@@ -118,19 +117,11 @@ fn condense_stretch(
                 row[width - 1] = force_n[here];
                 if row.iter().all(|value| value.is_finite()) {
                     let factor = weight.map_or(1.0, |weight| weight(force_n[here], &row[..width - 1]).sqrt());
-                    for (column, value) in row.iter().enumerate() {
-                        block[column * BLOCK_ROWS + filled] = factor * value;
-                    }
-                    filled += 1;
-                    if filled == BLOCK_ROWS {
-                        summary.fold(&mut block, filled);
-                        filled = 0;
-                    }
+                    gathered.push(row.iter().map(|value| factor * value));
                 }
             }
             next += stride;
         }
     }
-    summary.fold_part(&mut block, filled);
-    Ok(summary)
+    Ok(gathered.summary())
 }
