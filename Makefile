@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
 PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench pam-export pam-fleet pam-compare
 
-.PHONY: all install test check bench compare tables tutorial tutorial-muscle first-hour hard-use odd-inputs mutate short-recordings fuzz datasets recordings prove prove-worlds prove-real sensitivity fleet-slurm clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial tutorial-muscle first-hour hard-use odd-inputs mutate short-recordings fuzz datasets recordings prove prove-worlds prove-real sensitivity fleet-slurm processors mutants clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -152,6 +152,20 @@ prove-real: cargo-is-there
 fleet-slurm: cargo-is-there
 	@$(CARGO) build --release --locked --bins
 	@scripts/fleet/test-slurm --bin $(BIN)
+
+# Artifacts of the shipped recordings by two builds, one for old processors and one for new ones, compared byte by byte; a quarter
+# of an hour.
+processors: cargo-is-there
+	@scripts/check-processors $(OUT)/processors
+
+# Mistakes put into what decides in a diagnosis, one at a time: the share that its tests notice. Needs cargo-mutants (cargo install
+# cargo-mutants --locked); hours, or one in so many of them with SHARD, as make mutants SHARD=0/20.
+MUTATED := search/*.rs verdict.rs trial.rs stand_ins.rs weigh.rs
+mutants: cargo-is-there
+	@if $(CARGO) mutants --version >/dev/null 2>&1; then \
+		$(CARGO) mutants --package pam-diagnosis $(foreach file,$(MUTATED),--file 'crates/diagnose/src/$(file)') \
+			$(if $(SHARD),--shard $(SHARD)) --output $(OUT) --no-shuffle -- --lib; \
+	else echo "skipped: cargo-mutants is not installed (cargo install cargo-mutants --locked)"; fi
 
 clean:
 	@rm -rf $(OUT)

@@ -8,9 +8,9 @@ use pam_core::effects::symbols::{symbol_of_base, symbol_of_effect};
 use pam_core::effects::{CATALOGUE, Symbol};
 use pam_diagnosis::traces::Trace;
 use pam_report::{
-    DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageCoordinate, PageEffect,
-    PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability,
-    PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
+    DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageEffect, PageEstimate,
+    PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter,
+    PageRecording, PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
 };
 
 use crate::empirical;
@@ -165,19 +165,6 @@ fn given(given: &AsGiven) -> PageGiven {
     }
 }
 
-fn coordinate(coordinate: Coordinate) -> PageCoordinate {
-    match coordinate {
-        Coordinate::Time => PageCoordinate::Time,
-        Coordinate::Pressure => PageCoordinate::Pressure,
-        Coordinate::Contraction => PageCoordinate::Contraction,
-        Coordinate::Speed => PageCoordinate::Speed,
-        Coordinate::TravelSinceReversal => PageCoordinate::TravelSinceReversal,
-        Coordinate::TimeSinceLastMove => PageCoordinate::TimeSinceLastMove,
-        Coordinate::Cycle => PageCoordinate::Cycle,
-        Coordinate::Force => PageCoordinate::Force,
-    }
-}
-
 /// Probability by chance above which a region is not shown.
 const CHANCE: f64 = 0.05;
 
@@ -192,7 +179,7 @@ pub(crate) fn significant(regions: &[Region]) -> impl Iterator<Item = &Region> {
 
 fn region(region: &Region) -> PageRegion {
     PageRegion {
-        coordinate: coordinate(region.coordinate),
+        coordinate: region.coordinate,
         from: region.from,
         to: region.to,
         share_of_excess: region.share_of_excess,

@@ -43,7 +43,7 @@ fn without_effects_the_ideal_log_is_the_truth() {
 
 #[test]
 fn every_effect_shows_in_a_protocol_and_vanishes_at_no_severity() {
-    for effect in &EFFECTS {
+    for effect in EFFECTS {
         let mut shown = 0.0_f64;
         for protocol in PROTOCOLS {
             let plain = bench(protocol, &[]).record(1);

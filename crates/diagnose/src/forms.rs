@@ -185,3 +185,6 @@ fn partial_n(setting: &Setting<'_>, state: &State, guesses: &[CandidateEffect], 
     weights.drain(from..from + n);
     (0..setting.track.n()).map(|at| sheet.force_n(at, &weights)).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -254,3 +254,6 @@ fn instrument(
         format!("in {} {words}", paths.join(", "))
     }))
 }
+
+#[cfg(test)]
+pub(crate) mod tests;

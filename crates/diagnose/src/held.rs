@@ -115,3 +115,6 @@ fn rmse_n(trace: &Trace) -> f64 {
         counted.fold((0.0, 0_u32), |(sum, n), at| (sum + (trace.force_n[at] - trace.model_n[at]).powi(2), n + 1));
     (sum / f64::from(n.max(1))).sqrt()
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,7 +6,7 @@
 //! or of the length, damping with or without pressure, a short or a long memory) counts with the form that is most like the
 //! other effect: near 1 there is a form of each that cannot be told from one of the other.
 //!
-//! Typical sizes are the middle of the ranges that the pages of the effects give, which come from the same sources.
+//! Typical sizes are those of the effects' pages ([`Page::typical`](pam_core::effects::Page)).
 
 use std::ops::Range;
 
@@ -30,42 +30,6 @@ const STANDARD_ERRORS: f64 = 3.0;
 /// Share of the noise that it must reach besides: nothing smaller is worth a name, and the noise of the channels in the
 /// columns of an effect reaches this by itself where the effect has nothing to act on.
 const LEAST_SHARE_OF_NOISE: f64 = 0.2;
-
-/// An effect at typical sizes: each shape with each amplitude alone is one form of it.
-struct Typical {
-    id: &'static str,
-    shapes: &'static [&'static [f64]],
-    amplitudes: &'static [f64],
-}
-
-/// SI. Shapes of `force-step` depend on the recordings; see [`shapes`].
-static TYPICAL: [Typical; 22] = [
-    Typical { id: "channel-delay", shapes: &[&[0.02, 0.0], &[0.0, 0.02], &[0.02, 0.02]], amplitudes: &[] },
-    Typical { id: "pressure-gauge-hysteresis", shapes: &[&[1e4]], amplitudes: &[2e3] },
-    // 1 N per hour and 2 N.
-    Typical { id: "force-drift", shapes: &[&[120.0]], amplitudes: &[1.0 / 3600.0, 2.0] },
-    // 100 N/mm.
-    Typical { id: "series-compliance", shapes: &[&[1e-5, 1.0, 0.0]], amplitudes: &[] },
-    Typical { id: "inertia", shapes: &[&[25.0]], amplitudes: &[0.5] },
-    Typical { id: "slack", shapes: &[&[0.0, 0.0]], amplitudes: &[] },
-    Typical { id: "pressure-lag", shapes: &[&[0.06]], amplitudes: &[] },
-    Typical { id: "threshold-pressure", shapes: &[&[3e4]], amplitudes: &[] },
-    Typical { id: "end-taper", shapes: &[&[]], amplitudes: &[1.0, 0.0] },
-    Typical { id: "braid-lockup", shapes: &[&[0.2, 0.008]], amplitudes: &[1e4] },
-    Typical { id: "presliding-hysteresis", shapes: &[&[1e-3, 1.0]], amplitudes: &[] },
-    Typical { id: "rubber-hysteresis", shapes: &[&[2e-3]], amplitudes: &[5.0] },
-    // Half of an f' of 1.2e-3.
-    Typical { id: "stribeck", shapes: &[&[5e-3, 1.0, 0.0]], amplitudes: &[6e-4] },
-    Typical { id: "rate-dependent-hysteresis", shapes: &[&[3e-4]], amplitudes: &[1e-4] },
-    Typical { id: "load-dependent-friction", shapes: &[&[]], amplitudes: &[0.03] },
-    Typical { id: "viscous-damping", shapes: &[&[]], amplitudes: &[100.0, 100.0] },
-    Typical { id: "viscoelastic-relaxation", shapes: &[&[3.0]], amplitudes: &[0.1, 0.1, 0.1] },
-    Typical { id: "pressure-creep", shapes: &[&[3.0, 0.0], &[3.0, 1.0]], amplitudes: &[0.025, 0.025, 0.025] },
-    Typical { id: "mullins-softening", shapes: &[&[0.03, 0.5]], amplitudes: &[0.06, 0.06] },
-    Typical { id: "thermal-softening", shapes: &[&[400.0]], amplitudes: &[0.1, 0.0] },
-    Typical { id: "fatigue-wear", shapes: &[&[0.5], &[1.0]], amplitudes: &[0.02] },
-    Typical { id: "force-step", shapes: &[], amplitudes: &[2.0] },
-];
 
 /// What the recordings of `setting` could tell apart on top of `state`, where noise of `noise_n` (root mean square)
 /// amounts to `n_independent` instants.
@@ -143,8 +107,7 @@ fn groups(setting: &Setting<'_>, state: &State) -> Vec<Range<usize>> {
 
 /// Typical shapes of an effect.
 fn shapes(setting: &Setting<'_>, effect: &'static dyn Effect) -> Vec<Vec<f64>> {
-    let id = effect.page().id;
-    if id == "force-step" {
+    if effect.page().id == "force-step" {
         // Halfway through the longest recording.
         let end_s =
             |range: &Range<usize>| range.clone().last().map_or(0.0, |at| setting.track.instants[at].moment.time_s);
@@ -156,14 +119,10 @@ fn shapes(setting: &Setting<'_>, effect: &'static dyn Effect) -> Vec<Vec<f64>> {
             .max_by(|left, right| end_s(left.1).total_cmp(&end_s(right.1)).then(right.0.cmp(&left.0)));
         return longest.map(|(index, range)| vec![index as f64, 0.5 * end_s(range)]).into_iter().collect();
     }
-    match typical(id) {
-        Some(typical) => typical.shapes.iter().map(|shape| shape.to_vec()).collect(),
-        None => vec![effect.shape().iter().map(|shape| shape.grid[shape.grid.len() / 2]).collect()],
+    match effect.page().typical.shapes {
+        [] => vec![effect.shape().iter().map(|shape| shape.grid[shape.grid.len() / 2]).collect()],
+        shapes => shapes.iter().map(|shape| shape.to_vec()).collect(),
     }
-}
-
-fn typical(id: &str) -> Option<&'static Typical> {
-    TYPICAL.iter().find(|typical| typical.id == id)
 }
 
 /// What a refit leaves of each form of `guess`.
@@ -172,7 +131,7 @@ fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess:
         let ground = Regressors { track: setting.track, columns: setting.columns, only: None, slopes: true };
         let k = guess.amplitudes().len();
         let columns = ground.more_columns(&state.sheet, guess, &state.model);
-        let sizes = typical(guess.id()).map_or(&[][..], |typical| typical.amplitudes);
+        let sizes = guess.effect.page().typical.amplitudes;
         return (0..k)
             .map(|column| {
                 let size = sizes.get(column).copied().unwrap_or(guess.amplitudes()[column].range.1);

@@ -85,3 +85,6 @@ fn left(question: &DiagnosisProblem<'_>, found: &Found, track: &Track) -> Option
     let near = &found.best.state.fit.x[..question.space.free.len()];
     Some(setting.fit(guesses, near, model)?.fit.mean_square)
 }
+
+#[cfg(test)]
+mod tests;

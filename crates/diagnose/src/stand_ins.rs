@@ -172,3 +172,6 @@ mod tests {
         assert_eq!(names(&touched, lag, Coordinate::Contraction), Vec::<&str>::new());
     }
 }
+
+#[cfg(test)]
+mod cases;

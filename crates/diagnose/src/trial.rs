@@ -339,3 +339,6 @@ mod tests {
         assert!(!wants_another(of("stribeck"), &[5e-3, 2.5, 200.0]));
     }
 }
+
+#[cfg(test)]
+mod cases;

@@ -156,3 +156,6 @@ mod tests {
         assert_eq!(verdict_of(200.0), Verdict::Unexplained);
     }
 }
+
+#[cfg(test)]
+mod cases;

@@ -92,3 +92,6 @@ impl Diagnosis {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

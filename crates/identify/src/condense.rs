@@ -9,7 +9,8 @@ use std::ops::Range;
 
 use pam_core::force::columns::{ForceColumns, N_COLUMNS};
 use pam_core::recording::CHUNK_ROWS;
-use pam_optim::summary::{BLOCK_ROWS, Summary};
+use pam_optim::gathered::Gathered;
+use pam_optim::summary::Summary;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;
@@ -117,9 +118,9 @@ pub(crate) fn condense_stretch(
     stride: usize,
     weight: Option<&SampleWeight<'_>>,
 ) -> std::io::Result<Summary> {
-    let mut folding = Folding::new(columns.n_columns());
-    fold_rows(&mut folding, prepared, rows, columns, stride, weight)?;
-    Ok(folding.finish())
+    let mut gathered = Gathered::new(columns.n_columns());
+    fold_rows(&mut gathered, prepared, rows, columns, stride, weight)?;
+    Ok(gathered.summary())
 }
 
 /// Folds some rows of a recording in, as [`condense`] does.
@@ -127,7 +128,7 @@ pub(crate) fn condense_stretch(
 /// # Errors
 /// Where samples cannot be read back.
 pub(crate) fn fold_rows(
-    folding: &mut Folding,
+    gathered: &mut Gathered,
     prepared: &Prepared,
     rows: Range<usize>,
     columns: &dyn Columns,
@@ -147,56 +148,11 @@ pub(crate) fn fold_rows(
                 row[width - 1] = force_n[here];
                 if row.iter().all(|value| value.is_finite()) {
                     let factor = weight.map_or(1.0, |weight| weight(force_n[here], &row[..width - 1]).sqrt());
-                    folding.push(&row, factor);
+                    gathered.push(row.iter().map(|value| factor * value));
                 }
             }
             next += stride;
         }
     }
     Ok(())
-}
-
-/// Rows on their way into a summary, block by block.
-#[derive(Debug, Clone)]
-pub(crate) struct Folding {
-    summary: Summary,
-    block: Vec<f64>,
-    filled: usize,
-}
-
-impl Folding {
-    pub(crate) fn new(n_columns: usize) -> Self {
-        Self::after(Summary::new(n_columns), &[])
-    }
-
-    /// After some blocks, and rows that wait for theirs to be full.
-    pub(crate) fn after(summary: Summary, waiting: &[f64]) -> Self {
-        let width = summary.n_columns() + 1;
-        let mut folding = Self { summary, block: vec![0.0; BLOCK_ROWS * width], filled: 0 };
-        waiting.chunks_exact(width).for_each(|row| folding.push(row, 1.0));
-        folding
-    }
-
-    fn push(&mut self, row: &[f64], factor: f64) {
-        for (column, value) in row.iter().enumerate() {
-            self.block[column * BLOCK_ROWS + self.filled] = factor * value;
-        }
-        self.filled += 1;
-        if self.filled == BLOCK_ROWS {
-            self.summary.fold(&mut self.block, self.filled);
-            self.filled = 0;
-        }
-    }
-
-    /// What has been folded in whole blocks, and the rows that wait, one after the other.
-    pub(crate) fn open(&self) -> (&Summary, Vec<f64>) {
-        let n_columns = self.summary.n_columns();
-        let row = |row: usize| (0..=n_columns).map(move |column| self.block[column * BLOCK_ROWS + row]);
-        (&self.summary, (0..self.filled).flat_map(row).collect())
-    }
-
-    pub(crate) fn finish(mut self) -> Summary {
-        self.summary.fold_part(&mut self.block, self.filled);
-        self.summary
-    }
 }

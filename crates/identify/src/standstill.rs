@@ -13,7 +13,8 @@ use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
 use pam_core::force::Form;
 use pam_core::force::columns::{ForceColumns, N_COLUMNS};
 use pam_core::recording::CHUNK_ROWS;
-use pam_optim::summary::{BLOCK_ROWS, Summary};
+use pam_optim::gathered::Gathered;
+use pam_optim::summary::Summary;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;
@@ -307,13 +308,9 @@ pub(crate) fn condensed(
     for rows in prepared.direction.left_out() {
         left_out[rows.start.min(n_rows)..rows.end.min(n_rows)].fill(true);
     }
-    let n_columns = N_COLUMNS + usize::from(change_pa.is_some());
-    let width = n_columns + 1;
-    let mut summary = Summary::new(n_columns);
+    let mut gathered = Gathered::new(N_COLUMNS + usize::from(change_pa.is_some()));
     let late_n =
         |change_pa: f64, length_m: f64| columns.gas().force_n(change_pa, columns.contraction_ratio(length_m), 1.0, 1.0);
-    let mut block = vec![0.0; BLOCK_ROWS * width];
-    let mut filled = 0;
     let samples = &prepared.recording.samples;
     let mut row = rows.start;
     while row < n_rows {
@@ -328,21 +325,13 @@ pub(crate) fn condensed(
                 let late = change_pa.map(|change_pa| late_n(change_pa[row], length_m));
                 let force_n = chunk.force_n()[here];
                 if force_n.is_finite() && values.iter().chain(&late).all(|value| value.is_finite()) {
-                    for (column, value) in values.iter().chain(&late).chain([&force_n]).enumerate() {
-                        block[column * BLOCK_ROWS + filled] = *value;
-                    }
-                    filled += 1;
-                    if filled == BLOCK_ROWS {
-                        summary.fold(&mut block, filled);
-                        filled = 0;
-                    }
+                    gathered.push(values.into_iter().chain(late).chain([force_n]));
                 }
             }
             row += stride;
         }
     }
-    summary.fold_part(&mut block, filled);
-    Ok(summary)
+    Ok(gathered.summary())
 }
 
 #[cfg(test)]

@@ -5,11 +5,12 @@
 use std::f64::consts::PI;
 use std::io::Write as _;
 
+use pam_core::artifact::diagnosis::Coordinate;
 use pam_report::{
-    ConfusionFigure, DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageCoordinate, PageEffect,
-    PageEvidence, PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording,
-    PageRegion, PageUnknown, PageVerdict, SignatureFigure, SignaturePanel, SignatureSeries, confusion_figure,
-    diagnosis_page, signature_figure,
+    ConfusionFigure, DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageEffect, PageEvidence,
+    PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording, PageRegion,
+    PageUnknown, PageVerdict, SignatureFigure, SignaturePanel, SignatureSeries, confusion_figure, diagnosis_page,
+    signature_figure,
 };
 
 const REST_MM: f64 = 267.0;
@@ -178,7 +179,7 @@ fn effect() -> PageEffect {
     }
 }
 
-fn region(coordinate: PageCoordinate, from: f64, to: f64, share_of_excess: f64, p_value: f64) -> PageRegion {
+fn region(coordinate: Coordinate, from: f64, to: f64, share_of_excess: f64, p_value: f64) -> PageRegion {
     PageRegion { coordinate, from, to, share_of_excess, p_value, recording: None }
 }
 
@@ -275,14 +276,14 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
             .to_owned();
         page.warnings = vec!["Pressures below 60 kPa were not recorded; thresholds cannot be judged.".to_owned()];
         page.regions = vec![
-            region(PageCoordinate::TravelSinceReversal, 5e-5, 1.6e-3, 0.71, 2e-12),
-            region(PageCoordinate::Pressure, 380e3, 520e3, 0.44, 8e-5),
-            region(PageCoordinate::Contraction, 0.0, 0.03, 0.31, 0.004),
+            region(Coordinate::TravelSinceReversal, 5e-5, 1.6e-3, 0.71, 2e-12),
+            region(Coordinate::Pressure, 380e3, 520e3, 0.44, 8e-5),
+            region(Coordinate::Contraction, 0.0, 0.03, 0.31, 0.004),
         ];
         page.effects = vec![effect()];
         page.candidates = candidates();
         page.unknown = PageUnknown {
-            regions: vec![region(PageCoordinate::Speed, 0.0, 0.4e-3, 0.02, 0.03)],
+            regions: vec![region(Coordinate::Speed, 0.0, 0.4e-3, 0.02, 0.03)],
             implausible: vec![PageImplausible {
                 parameter: "k1".to_owned(),
                 value: 1.19,

@@ -32,10 +32,10 @@ pub mod text;
 pub use change_page::{ChangePage, PageChange, PageCompared, change_page};
 pub use confusion_figure::{ConfusionFigure, confusion_figure};
 pub use diagnosis_page::{
-    DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageCoordinate, PageEffect,
-    PageEmpirical, PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput,
-    PageIsolability, PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageTerm, PageUnknown,
-    PageVerdict, diagnosis_page,
+    DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageEffect, PageEmpirical,
+    PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability,
+    PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageTerm, PageUnknown, PageVerdict,
+    diagnosis_page,
 };
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;

@@ -6,11 +6,12 @@
     reason = "a test that fails may panic, and one that skips says so"
 )]
 
+use pam_core::artifact::diagnosis::Coordinate;
 use pam_report::{
     ConfusionFigure, DiagnosisPage, FigureError, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate,
-    PageCoordinate, PageEffect, PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible,
-    PageInput, PageIsolability, PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageUnknown,
-    PageVerdict, SignatureFigure, SignaturePanel, SignatureSeries, confusion_figure, diagnosis_page, signature_figure,
+    PageEffect, PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput,
+    PageIsolability, PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
+    SignatureFigure, SignaturePanel, SignatureSeries, confusion_figure, diagnosis_page, signature_figure,
 };
 
 const SHARP: &str = "<b>&\"'</p>\u{0}";
@@ -38,7 +39,7 @@ fn recording(name: &str, n: usize, effect: bool) -> PageRecording {
     }
 }
 
-fn region(coordinate: PageCoordinate) -> PageRegion {
+fn region(coordinate: Coordinate) -> PageRegion {
     PageRegion {
         coordinate,
         from: 0.0,
@@ -100,7 +101,7 @@ fn full() -> DiagnosisPage {
             after: estimate(),
         }],
         recordings: vec![recording("a.csv", 4000, true), held_out],
-        regions: PageCoordinate::ALL.map(region).to_vec(),
+        regions: Coordinate::ALL.map(region).to_vec(),
         effects: vec![PageEffect {
             id: text(),
             name: text(),
@@ -128,7 +129,7 @@ fn full() -> DiagnosisPage {
         static_map: false,
         candidates: vec![PageCandidate { id: text(), name: text(), evidence, explains: 0.4, outcome: text() }],
         unknown: PageUnknown {
-            regions: vec![region(PageCoordinate::Speed)],
+            regions: vec![region(Coordinate::Speed)],
             implausible: vec![PageImplausible {
                 parameter: text(),
                 value: 2.0,

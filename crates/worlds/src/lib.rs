@@ -22,7 +22,7 @@
 //!
 //! Modules in reading order: [`draw`], [`curve`], [`rubber`], [`muscle`], [`caliper`], [`lumped`], [`slices`], [`shape`],
 //! [`standstill`], [`friction`], [`mechanism`], [`place`], [`forms`], [`sealed`], [`catalogue`], [`region`], [`protocol`],
-//! [`simulate`], [`noise`], [`sensors`], [`severity`], [`world`], [`case`], [`mod@write`].
+//! [`plan`], [`simulate`], [`noise`], [`sensors`], [`severity`], [`world`], [`case`], [`mod@write`].
 
 pub mod caliper;
 pub mod case;
@@ -36,6 +36,7 @@ pub mod mechanism;
 pub mod muscle;
 pub mod noise;
 pub mod place;
+pub mod plan;
 pub mod protocol;
 pub mod region;
 pub mod rubber;

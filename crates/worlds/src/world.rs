@@ -9,6 +9,7 @@ use crate::friction::{Amplitude, Element, Friction};
 use crate::lumped::LumpedMuscle;
 use crate::muscle::{Muscle, StaticForce};
 use crate::noise::Color;
+use crate::plan::{self, Kinds};
 use crate::protocol::{KINDS, Kind};
 use crate::region::Region;
 use crate::rubber::Rubber;
@@ -285,47 +286,13 @@ fn draw_sensors(dice: &mut Dice, demands: &Demands, muscle: &Muscle, force: &Sta
 }
 
 fn draw_plan(dice: &mut Dice, demands: &Demands, rate_hz: f64) -> (Vec<(Kind, f64)>, usize) {
-    let rich = dice.chance(0.8) || !demands.wants.is_empty() && dice.chance(0.3);
-    let count = if rich { dice.between(3, if demands.slow { 4 } else { 6 }) } else { dice.between(1, 2) };
-    let mut kinds: Vec<Kind> = Vec::new();
-    if !demands.wants.is_empty() {
-        kinds.push(*dice.pick(&demands.wants));
-    }
-    if rich {
-        // Enough excitation: both pressure and length vary widely.
-        kinds.push(*dice.pick(&[Kind::Isobaric, Kind::Multisine]));
-        kinds.push(*dice.pick(&[Kind::IsometricRamps, Kind::PressureSteps, Kind::Multisine]));
-    }
-    while kinds.len() < count {
-        let kind = *dice.pick(&KINDS);
-        if !kinds.contains(&kind) || dice.chance(0.2) {
-            kinds.push(kind);
-        }
-    }
-    kinds.truncate(count);
-    dice.shuffle(&mut kinds);
-    let estimation = kinds.len();
-    kinds.push(if dice.chance(0.6) { Kind::Multisine } else { *dice.pick(&KINDS) });
-    if dice.chance(0.5) {
-        kinds.push(*dice.pick(&KINDS));
-    }
-    let rows = if demands.slow { 14_000.0 } else { 12_000.0 };
-    let plan = kinds
-        .into_iter()
-        .map(|kind| {
-            let drawn_s = if demands.slow {
-                dice.log_uniform(90.0, 360.0)
-            } else {
-                match dice.weighted(&[0.1, 0.78, 0.12]) {
-                    0 => dice.uniform(10.0, 30.0),
-                    1 => dice.uniform(30.0, 90.0),
-                    _ => dice.log_uniform(90.0, 600.0),
-                }
-            };
-            (kind, drawn_s.min(rows / rate_hz).max(10.0).round())
-        })
-        .collect();
-    (plan, estimation)
+    let kinds = Kinds {
+        telling: [&[Kind::Isobaric, Kind::Multisine], &[Kind::IsometricRamps, Kind::PressureSteps, Kind::Multisine]],
+        any: |dice| *dice.pick(&KINDS),
+        held_out: |_| Kind::Multisine,
+        longest_s: 600.0,
+    };
+    plan::draw(dice, demands, rate_hz, &kinds)
 }
 
 impl World {

@@ -1,5 +1,7 @@
 //! What a case is: everything that is needed to record it again, and what was concealed in it.
 
+use pam_core::effects::effect;
+use pam_virtual_bench::catalogue::EFFECTS;
 use serde::{Deserialize, Serialize};
 
 /// How many effects are concealed, and of which sort.
@@ -133,28 +135,7 @@ pub const NAMELESS: [&str; 2] = ["rubbing-tie", "bad-spot"];
 /// The effect that happens once, in one recording.
 pub const EVENT: &str = "force-step";
 
-/// Ids of the catalogue.
-pub const CATALOGUE: [&str; 22] = [
-    "presliding-hysteresis",
-    "rubber-hysteresis",
-    "stribeck",
-    "viscous-damping",
-    "rate-dependent-hysteresis",
-    "load-dependent-friction",
-    "viscoelastic-relaxation",
-    "pressure-creep",
-    "mullins-softening",
-    "thermal-softening",
-    "fatigue-wear",
-    "threshold-pressure",
-    "end-taper",
-    "braid-lockup",
-    "slack",
-    "pressure-lag",
-    "pressure-gauge-hysteresis",
-    "channel-delay",
-    "series-compliance",
-    "inertia",
-    "force-drift",
-    "force-step",
-];
+/// Ids of the effects that the bench can conceal and the catalogue has, in the order of the bench.
+pub fn catalogue() -> Vec<&'static str> {
+    EFFECTS.iter().map(|effect| effect.id).filter(|id| effect(id).is_some()).collect()
+}

@@ -5,7 +5,7 @@ use pam_report::FigureError;
 use pam_report::plot::{self, Bins, Canvas, ColorBar, Map, Rect};
 use serde::Serialize;
 
-use crate::case::{CATALOGUE, Kind, NAMELESS};
+use crate::case::{Kind, NAMELESS, catalogue};
 use crate::score::{Outcome, Score};
 
 /// Columns beside the names of the catalogue.
@@ -26,8 +26,8 @@ impl Confusion {
     /// Of every case with one effect, none, or a nameless one alone.
     pub fn of(scores: &[Score]) -> Self {
         let truths: Vec<String> =
-            CATALOGUE.into_iter().chain(NAMELESS).chain([Kind::Nothing.name()]).map(str::to_owned).collect();
-        let answers: Vec<String> = CATALOGUE.into_iter().chain(OTHERS).map(str::to_owned).collect();
+            catalogue().into_iter().chain(NAMELESS).chain([Kind::Nothing.name()]).map(str::to_owned).collect();
+        let answers: Vec<String> = catalogue().into_iter().chain(OTHERS).map(str::to_owned).collect();
         let mut counts = vec![vec![0; answers.len()]; truths.len()];
         for score in scores.iter().filter(|score| score.case.concealed.len() <= 1) {
             let truth = score.truth().first().map_or(Kind::Nothing.name(), |id| *id).to_owned();
@@ -72,13 +72,24 @@ impl Confusion {
         let cells = || self.counts.iter().rev().flat_map(|counts| counts.iter().map(move |count| (count, counts)));
         let map = Map {
             columns: Bins::Named(
-                "named first (numbers as on the left; 23 consistent, 24 no name, 25 failed)".to_owned(),
+                format!(
+                    "named first (numbers as on the left; {} consistent, {} no name, {} failed)",
+                    n_columns - 2,
+                    n_columns - 1,
+                    n_columns
+                ),
                 numbers,
             ),
             rows: Bins::Named("concealed".to_owned(), names),
             values: cells().map(|(count, counts)| (*count > 0).then(|| *count as f64 / most(counts))).collect(),
             texts: cells().map(|(count, _)| if *count > 0 { count.to_string() } else { String::new() }).collect(),
-            bar: ColorBar { title: "share of the row".to_owned(), from: 0.0, to: 1.0, color: plot::sequential },
+            bar: ColorBar {
+                title: "share of the row".to_owned(),
+                from: 0.0,
+                to: 1.0,
+                logarithm: false,
+                color: plot::sequential,
+            },
         };
         let (width, height) = (CELL * n_columns as f64 + 330.0, CELL * n_rows as f64 + 110.0);
         Canvas::document(
@@ -93,7 +104,7 @@ impl Confusion {
 }
 
 fn numbered(id: &str, row: usize) -> String {
-    if row < CATALOGUE.len() { format!("{id} {}", row + 1) } else { id.to_owned() }
+    if row < catalogue().len() { format!("{id} {}", row + 1) } else { id.to_owned() }
 }
 
 /// First name, or the verdict where nothing was named.

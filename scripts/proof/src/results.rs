@@ -7,7 +7,7 @@ use anyhow::{Context as _, Result};
 use pam_report::Table;
 use serde_json::json;
 
-use crate::case::{CATALOGUE, Kind, NAMELESS};
+use crate::case::{Kind, NAMELESS, catalogue};
 use crate::confusion::Confusion;
 use crate::criteria::{Criterion, criteria};
 use crate::misses;
@@ -65,7 +65,7 @@ impl Results {
             "redraws",
             "severity, median",
         ]);
-        for id in CATALOGUE.into_iter().chain(NAMELESS) {
+        for id in catalogue().into_iter().chain(NAMELESS) {
             let alone: Vec<&Score> = self.scores.iter().filter(|score| score.truth() == [id]).collect();
             if alone.is_empty() {
                 continue;

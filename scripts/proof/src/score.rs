@@ -1,9 +1,10 @@
 //! One case: the diagnosis against the truth.
 
 use pam_core::artifact::diagnosis::{Coordinate, DiagnosisArtifact, Region, Verdict};
+use pam_core::effects::effect;
 use serde::{Deserialize, Serialize};
 
-use crate::case::{CATALOGUE, Case, Kind, Place};
+use crate::case::{Case, Kind, NAMELESS, Place};
 use crate::heldout::HeldOut;
 
 /// Share of both intervals that must overlap for a place to be right.
@@ -161,7 +162,7 @@ impl Score {
 
     /// For the nameless: whether the top region of what is unexplained, or of the mismatch, is the true place.
     pub fn nameless_place_is_right(&self) -> bool {
-        let place = self.case.concealed.iter().find(|effect| !CATALOGUE.contains(&effect.id.as_str()));
+        let place = self.case.concealed.iter().find(|effect| NAMELESS.contains(&effect.id.as_str()));
         let Some(place) = place.and_then(|effect| effect.place.as_ref()) else { return false };
         let spots = self.diagnosed().map(|diagnosed| [&diagnosed.unexplained_top, &diagnosed.top]);
         spots.is_some_and(|spots| spots.into_iter().flatten().any(|spot| spot.is(place)))
@@ -172,23 +173,10 @@ impl Score {
         if self.case.kind != Kind::Single {
             return None;
         }
-        let lives_in = lives_in(&self.case.concealed.first()?.id)?;
+        let regions = effect(&self.case.concealed.first()?.id)?.page().regions;
         let top = self.diagnosed().and_then(|diagnosed| diagnosed.top.as_ref());
-        Some(top.is_some_and(|top| lives_in.contains(&top.coordinate)))
+        (!regions.is_empty()).then(|| top.is_some_and(|top| regions.contains(&top.coordinate)))
     }
-}
-
-/// Coordinates that name the region in which an effect lives; none where it lives everywhere.
-pub fn lives_in(id: &str) -> Option<&'static [Coordinate]> {
-    Some(match id {
-        "braid-lockup" => &[Coordinate::Contraction],
-        "slack" => &[Coordinate::Force, Coordinate::Pressure],
-        "threshold-pressure" => &[Coordinate::Pressure],
-        "stribeck" => &[Coordinate::Speed],
-        "presliding-hysteresis" => &[Coordinate::TravelSinceReversal],
-        "force-drift" | "force-step" => &[Coordinate::Time],
-        _ => return None,
-    })
 }
 
 #[cfg(test)]

@@ -126,7 +126,7 @@ impl Unturned {
         }
         let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
         slow.doubt(&resting, thresholds, &mut marks);
-        if carried == Bounds::UNKNOWN {
+        if !carried.is_known() {
             first_travel(&contraction, &mut marks);
         }
         let mut states = from_marks(&marks, carried);

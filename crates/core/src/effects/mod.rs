@@ -21,37 +21,13 @@ pub mod sentence;
 pub mod slip;
 pub mod symbols;
 
+mod lag;
 mod prony;
 
-mod braid_lockup;
-mod channel_delay;
-mod end_taper;
-mod fatigue_wear;
-mod force_drift;
-mod force_step;
-mod inertia;
-mod load_dependent_friction;
-mod mullins_softening;
-mod presliding_hysteresis;
-mod pressure_creep;
-mod pressure_gauge_hysteresis;
-mod pressure_lag;
-mod rate_dependent_hysteresis;
-mod rubber_hysteresis;
-mod series_compliance;
-mod slack;
-pub mod static_map;
-mod stribeck;
-mod thermal_softening;
-mod threshold_pressure;
-mod viscoelastic_relaxation;
-mod viscous_damping;
-
 pub use augmented::{AugmentedMemory, AugmentedModel, Past, Term};
-pub use catalogue::{CATALOGUE, NAMELESS, effect};
-pub use inertia::Mount;
+pub use catalogue::{CATALOGUE, Mount, NAMELESS, effect, static_map};
 pub use moment::{Base, Moment};
-pub use page::{Page, Symbol};
+pub use page::{Page, Symbol, Typical};
 pub use sentence::Sentence;
 
 use std::fmt;
@@ -92,6 +68,8 @@ pub enum Kind {
 pub struct Shape {
     /// Name in artifacts, snake case with unit: `time_constant_s`.
     pub name: &'static str,
+    /// Symbol in the equation of the page.
+    pub symbol: &'static str,
     /// Unit; `1` where it has none.
     pub unit: &'static str,
     /// Lowest and highest value that a fit may give it.
@@ -105,6 +83,8 @@ pub struct Shape {
 pub struct Amplitude {
     /// Name in artifacts.
     pub name: &'static str,
+    /// Symbol in the equation of the page.
+    pub symbol: &'static str,
     /// Unit; `1` where it has none.
     pub unit: &'static str,
     /// Lowest and highest value that physics allows.

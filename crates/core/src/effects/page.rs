@@ -3,7 +3,7 @@
 use crate::artifact::diagnosis::Coordinate;
 
 /// The page of an effect in the catalogue.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Page {
     /// Catalogue id, kebab case.
     pub id: &'static str,
@@ -29,6 +29,26 @@ pub struct Page {
     pub protocol: &'static str,
     /// Coordinate over which it is concentrated.
     pub coordinate: Coordinate,
+    /// A size at which it is usual, the middle of the ranges that the symbols give; what recordings could show is asked for it.
+    pub typical: Typical,
+    /// Coordinates that name the region in which it lives, any of them; none where it lives everywhere.
+    pub regions: &'static [Coordinate],
+    /// Drivers of an empirical term that say what it depends on, as files call them.
+    pub drivers: &'static [&'static str],
+}
+
+/// An effect at typical sizes, SI: each shape with each amplitude alone is one form of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Typical {
+    /// Shapes; none where they depend on the recordings, or are the middle of the grids.
+    pub shapes: &'static [&'static [f64]],
+    /// One for each amplitude; none where they are the highest.
+    pub amplitudes: &'static [f64],
+}
+
+impl Typical {
+    /// Of an effect that comes in every size.
+    pub const UNKNOWN: Self = Self { shapes: &[], amplitudes: &[] };
 }
 
 /// One symbol of an equation.

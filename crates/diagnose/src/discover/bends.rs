@@ -2,7 +2,7 @@
 //! from the published one rather than what else is there.
 
 use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::sentence::{Driver, Recall, Sentence};
+use pam_core::effects::sentence::{Recall, Sentence};
 
 use crate::hypothesis::CandidateEffect;
 
@@ -21,23 +21,14 @@ fn lives_in(sentence: &Sentence) -> Coordinate {
         (Recall::Lag { .. } | Recall::TwoLags { .. }, _) => Coordinate::TimeSinceLastMove,
         (Recall::Play { .. } | Recall::Dahl { .. }, _) => Coordinate::TravelSinceReversal,
         (Recall::Travelled | Recall::Work, _) => Coordinate::Cycle,
-        (Recall::None | Recall::Largest, driver) => match driver {
-            Driver::Pressure => Coordinate::Pressure,
-            Driver::Contraction => Coordinate::Contraction,
-            Driver::Speed => Coordinate::Speed,
-            Driver::Force => Coordinate::Force,
-            Driver::Time => Coordinate::Time,
-            Driver::TravelSinceReversal => Coordinate::TravelSinceReversal,
-            Driver::TimeSinceLastMove { .. } | Driver::TimeSincePressureMoved { .. } => Coordinate::TimeSinceLastMove,
-            Driver::Cycle => Coordinate::Cycle,
-        },
+        (Recall::None | Recall::Largest, driver) => driver.coordinate(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use pam_core::effects::effect;
-    use pam_core::effects::sentence::{Curve, Scale};
+    use pam_core::effects::sentence::{Curve, Driver, Scale};
 
     use super::*;
     use crate::hypothesis::Beginning;

@@ -1,8 +1,6 @@
 use super::*;
 use crate::rehearsal::tests::Given;
 
-use pam_core::effects::CATALOGUE;
-
 fn of(protocols: &[&str]) -> Isolability {
     let given = Given::of(protocols, &[]);
     let setting = given.setting();
@@ -17,24 +15,6 @@ fn cosine(found: &Isolability, left: &str, right: &str) -> f64 {
 
 fn visible_n(found: &Isolability, id: &str) -> f64 {
     found.visible_n[found.ids.iter().position(|known| known == id).expect("an id")]
-}
-
-#[test]
-fn every_effect_has_a_typical_size_within_what_physics_allows() {
-    for effect in CATALOGUE {
-        let page = effect.page();
-        let typical = typical(page.id).expect(page.id);
-        assert_eq!(typical.amplitudes.len(), effect.amplitudes().len(), "{}", page.id);
-        for (size, amplitude) in typical.amplitudes.iter().zip(effect.amplitudes()) {
-            assert!((amplitude.range.0..=amplitude.range.1).contains(size), "{}", page.id);
-        }
-        for shape in typical.shapes {
-            assert_eq!(shape.len(), effect.shape().len(), "{}", page.id);
-            for (value, parameter) in shape.iter().zip(effect.shape()) {
-                assert!((parameter.range.0..=parameter.range.1).contains(value), "{}", page.id);
-            }
-        }
-    }
 }
 
 /// In a synthetic study damping and a late length are one group in an isobaric sweep, at 0.995.

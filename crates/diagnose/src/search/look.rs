@@ -174,3 +174,6 @@ pub(super) fn promise(tried: &[Tried]) -> impl Iterator<Item = (&'static str, Ve
         .filter(move |trial| trial.log_ratio > (0.15 * best).max(0.3))
         .map(|trial| (trial.guess.id(), trial.guess.shape.clone()))
 }
+
+#[cfg(test)]
+mod tests;

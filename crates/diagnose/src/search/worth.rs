@@ -116,3 +116,6 @@ mod tests {
         assert!(held(100.0).log_ratio(&held(1.0)) > 20.0);
     }
 }
+
+#[cfg(test)]
+mod cases;

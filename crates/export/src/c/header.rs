@@ -81,7 +81,7 @@ pub fn header(path: &Path, content: &Header<'_>) -> Result<String, ExportError> 
         text.push_str(section);
     }
     for shared in Shared::ALL {
-        if parts.iter().any(|(part, _)| part.needs.contains(&shared)) {
+        if parts.iter().any(|(part, _)| part.needs(shared)) {
             text.push('\n');
             text.push_str(shared.text());
         }
@@ -116,7 +116,7 @@ fn parts_of(model: &AugmentedModel) -> Result<Vec<(Part, &Term)>, ExportError> {
             return Ok(sentence::part(n_empirical, &sentence, term.effect.amplitudes()));
         }
         let id = term.effect.page().id;
-        Part::of(id).cloned().ok_or_else(|| ExportError::UnknownEffect { id: id.to_owned() })
+        Part::of(id).ok_or_else(|| ExportError::UnknownEffect { id: id.to_owned() })
     };
     forces.map(|term| Ok((part_of(term)?, term))).collect()
 }
@@ -183,7 +183,7 @@ fn step(parts: &[(Part, &Term)]) -> String {
         of_role.map(|(part, _)| part.call(role)).collect()
     };
     let slope = |shared: Shared, name: &str| {
-        let is_needed = parts.iter().any(|(part, _)| part.needs.contains(&shared));
+        let is_needed = parts.iter().any(|(part, _)| part.needs(shared));
         if is_needed {
             format!("    base.{name} = pam_{name}(now.pressure_pa, now.length_m);\n")
         } else {

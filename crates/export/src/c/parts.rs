@@ -41,22 +41,27 @@ impl Shared {
     }
 }
 
+/// Effects in C by the names of their files, every one that is a force. A delay of a channel belongs to recordings, and an event to
+/// one of them.
+const EFFECTS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/effects.rs"));
+
 /// An effect in C.
-#[derive(Debug, Clone)]
+///
+/// # Design
+/// What its function is handed and what it rests on is read from the C itself, so that a part is its text and nothing beside it.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Part {
     /// Id in the catalogue; `empirical-1` and so on for terms without a name.
-    pub(super) id: Cow<'static, str>,
+    pub(super) id: String,
     /// Its functions, and its memory where it has one.
     pub(super) text: Cow<'static, str>,
     /// Arguments of its function.
-    pub(super) arguments: &'static [Argument],
-    /// What it rests on.
-    pub(super) needs: &'static [Shared],
+    arguments: Vec<Argument>,
 }
 
 /// What the function of an effect is handed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Argument {
+enum Argument {
     /// Its memory.
     Memory,
     /// The instant.
@@ -67,53 +72,50 @@ pub(super) enum Argument {
     Force,
 }
 
-use Argument::{Base, Force, Memory, Now};
-
-macro_rules! part {
-    ($id:literal, $file:literal, [$($argument:expr),*], [$($shared:expr),*]) => {
-        Part {
-            id: Cow::Borrowed($id),
-            text: Cow::Borrowed(include_str!(concat!("templates/effects/", $file, ".h"))),
-            arguments: &[$($argument),*],
-            needs: &[$($shared),*],
-        }
-    };
+impl Argument {
+    /// The one that a parameter of a function takes, by its name.
+    fn of(parameter: &str) -> Option<Self> {
+        let name = parameter.trim_end().rsplit([' ', '*']).next()?;
+        Some(match name {
+            "memory" => Self::Memory,
+            "now" => Self::Now,
+            "base" => Self::Base,
+            "force_n" => Self::Force,
+            _ => return None,
+        })
+    }
 }
 
-/// Every effect that is a force in C. A delay of a channel belongs to recordings, and an event to one of them.
-const PARTS: &[Part] = &[
-    part!(
-        "pressure-gauge-hysteresis",
-        "pressure_gauge_hysteresis",
-        [Memory, Now, Base],
-        [Shared::Slip, Shared::Slopes]
-    ),
-    part!("force-drift", "force_drift", [Now], []),
-    part!("series-compliance", "series_compliance", [Memory, Now], []),
-    part!("inertia", "inertia", [Memory, Now], []),
-    part!("slack", "slack", [Force], []),
-    part!("pressure-lag", "pressure_lag", [Memory, Now], []),
-    part!("threshold-pressure", "threshold_pressure", [Now], []),
-    part!("end-taper", "end_taper", [Now], []),
-    part!("braid-lockup", "braid_lockup", [Now], []),
-    part!("presliding-hysteresis", "presliding_hysteresis", [Memory, Now], [Shared::Slip]),
-    part!("rubber-hysteresis", "rubber_hysteresis", [Memory, Now], [Shared::Slip]),
-    part!("stribeck", "stribeck", [Memory, Now, Base], []),
-    part!("rate-dependent-hysteresis", "rate_dependent_hysteresis", [Now, Base], []),
-    part!("load-dependent-friction", "load_dependent_friction", [Now, Base], []),
-    part!("viscous-damping", "viscous_damping", [Now], []),
-    part!("viscoelastic-relaxation", "viscoelastic_relaxation", [Memory, Now, Base], [Shared::Overstress]),
-    part!("pressure-creep", "pressure_creep", [Memory, Now, Base], [Shared::Overstress]),
-    part!("mullins-softening", "mullins_softening", [Memory, Now, Base], []),
-    part!("thermal-softening", "thermal_softening", [Memory, Now, Base], []),
-    part!("fatigue-wear", "fatigue_wear", [Memory, Now, Base], []),
-    part!("static-map", "static_map", [Now], []),
-];
-
 impl Part {
-    /// The part of an effect; none where it is no force.
-    pub(super) fn of(id: &str) -> Option<&'static Self> {
-        PARTS.iter().find(|part| part.id == id)
+    /// The part of an effect of the catalogue; none where it is no force.
+    pub(super) fn of(id: &str) -> Option<Self> {
+        let file = id.replace('-', "_");
+        let (_, text) = EFFECTS.iter().find(|(name, _)| *name == file)?;
+        Some(Self::new(id, *text))
+    }
+
+    /// The part of effect `id` whose functions and memory are `text`.
+    pub(super) fn new(id: &str, text: impl Into<Cow<'static, str>>) -> Self {
+        let text = text.into();
+        let name = id.replace('-', "_");
+        let function = ["sees", "slides", "pulls", "reads"]
+            .iter()
+            .find_map(|verb| text.split_once(&format!(" pam_{name}_{verb}(")))
+            .and_then(|(_, rest)| rest.split_once(')'));
+        let parameters = function.map_or("", |(parameters, _)| parameters);
+        let arguments = parameters.split(',').filter_map(Argument::of).collect();
+        Self { id: id.to_owned(), text, arguments }
+    }
+
+    /// Whether it rests on a shared memory.
+    pub(super) fn needs(&self, shared: Shared) -> bool {
+        self.text.contains(match shared {
+            Shared::Slip => "pam_slip",
+            Shared::Overstress => "pam_overstress",
+            Shared::Slopes => "->slope_n_per_pa",
+            Shared::LengthSlope => "->slope_n_per_m",
+            Shared::Sentence => "pam_sentence",
+        })
     }
 
     /// The id as a name in C.
@@ -122,7 +124,7 @@ impl Part {
     }
 
     pub(super) fn has_memory(&self) -> bool {
-        self.arguments.contains(&Memory)
+        self.arguments.contains(&Argument::Memory)
     }
 
     /// The call of its function in the step.
@@ -132,10 +134,10 @@ impl Part {
             .arguments
             .iter()
             .map(|argument| match argument {
-                Memory => format!("&state->{name}"),
-                Now => "&now".to_owned(),
-                Base => "&base".to_owned(),
-                Force => "force_n".to_owned(),
+                Argument::Memory => format!("&state->{name}"),
+                Argument::Now => "&now".to_owned(),
+                Argument::Base => "&base".to_owned(),
+                Argument::Force => "force_n".to_owned(),
             })
             .collect();
         let arguments = arguments.join(", ");
@@ -152,7 +154,7 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pam_core::effects::{CATALOGUE, Kind, NAMELESS};
+    use pam_core::effects::{CATALOGUE, Kind, NAMELESS, effect};
 
     #[test]
     fn every_effect_that_is_a_force_has_a_part() {
@@ -164,8 +166,11 @@ mod tests {
 
     #[test]
     fn memories_and_functions_are_named_after_their_effect() {
-        for part in PARTS {
+        for (file, text) in EFFECTS {
+            let part = Part::new(&file.replace('_', "-"), *text);
             let name = part.name();
+            assert!(!part.arguments.is_empty() && name == *file, "{name}");
+            assert!(effect(&part.id).is_some(), "{name} is no effect");
             assert_eq!(part.text.contains(&format!("}} pam_{name};")), part.has_memory(), "{name}");
             assert!(part.text.contains(&format!("pam_{name}_")), "{name}");
         }

@@ -6,28 +6,13 @@ use pam_core::effects::Amplitude;
 use pam_core::effects::sentence::{Curve, Driver, Recall, Scale, Sentence};
 
 use super::constants::{number, parameter};
-use super::parts::{Argument, Part, Shared};
+use super::parts::Part;
 
 /// The part of the `index`th empirical term of a model, from 1.
 pub(super) fn part(index: usize, sentence: &Sentence, amplitudes: &[Amplitude]) -> Part {
     let id = format!("empirical-{index}");
     let text = text(&id, sentence, amplitudes);
-    let uses_base = text.contains("*base");
-    let needs: &[Shared] = match sentence.scale {
-        Scale::SlopeOverPressure => &[Shared::Slopes, Shared::Sentence],
-        Scale::SlopeOverLength => &[Shared::LengthSlope, Shared::Sentence],
-        _ => &[Shared::Sentence],
-    };
-    Part {
-        id: id.into(),
-        text: text.into(),
-        arguments: if uses_base {
-            &[Argument::Memory, Argument::Now, Argument::Base]
-        } else {
-            &[Argument::Memory, Argument::Now]
-        },
-        needs,
-    }
+    Part::new(&id, text)
 }
 
 fn text(id: &str, sentence: &Sentence, amplitudes: &[Amplitude]) -> String {

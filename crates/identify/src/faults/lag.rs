@@ -13,7 +13,7 @@
 
 use pam_core::force::columns::{ForceColumns, N_COLUMNS};
 use pam_core::recording::CHUNK_ROWS;
-use pam_optim::summary::{BLOCK_ROWS, Summary};
+use pam_optim::gathered::Gathered;
 use rayon::prelude::*;
 
 use crate::prepare::Prepared;
@@ -198,10 +198,7 @@ fn find_one(windows: &[Window], columns: &ForceColumns, shifted: Shifted, stride
 
 /// Residual that free weights leave of every `stride`-th row, with the channel taken `lag_s` earlier.
 fn unexplained_rmse_n(windows: &[Window], columns: &ForceColumns, shifted: Shifted, stride: usize, lag_s: f64) -> f64 {
-    let width = N_COLUMNS + 1;
-    let mut summary = Summary::new(N_COLUMNS);
-    let mut block = vec![0.0; BLOCK_ROWS * width];
-    let mut filled = 0;
+    let mut gathered = Gathered::new(N_COLUMNS);
     for window in windows {
         let n = window.time_s.len();
         let (first_s, last_s) = (window.time_s[0], window.time_s[n - 1]);
@@ -223,18 +220,11 @@ fn unexplained_rmse_n(windows: &[Window], columns: &ForceColumns, shifted: Shift
             let row = columns.row(pressure_pa, length_m, window.direction[index]);
             let force_n = window.force_n[index];
             if row.iter().all(|value| value.is_finite()) && force_n.is_finite() {
-                for (column, value) in row.into_iter().chain([force_n]).enumerate() {
-                    block[column * BLOCK_ROWS + filled] = value;
-                }
-                filled += 1;
-                if filled == BLOCK_ROWS {
-                    summary.fold(&mut block, filled);
-                    filled = 0;
-                }
+                gathered.push(row.into_iter().chain([force_n]));
             }
         }
     }
-    summary.fold_part(&mut block, filled);
+    let summary = gathered.summary();
     (summary.residual_floor_square_sum() / (summary.n_rows().max(1)) as f64).sqrt()
 }
 

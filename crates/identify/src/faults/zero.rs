@@ -8,8 +8,9 @@
 use std::io;
 
 use pam_core::force::columns::{ForceColumns, N_COLUMNS};
+use pam_optim::gathered::Gathered;
 use pam_optim::polish::descend;
-use pam_optim::summary::{BLOCK_ROWS, Summary};
+use pam_optim::summary::Summary;
 
 use crate::identify::Identified;
 use crate::prepare::Prepared;
@@ -116,25 +117,14 @@ pub(super) fn samples_of(prepared: &Prepared, stride: usize) -> io::Result<Vec<S
 
 /// The samples that eq. 11 has a force for, in one triangle.
 pub(super) fn summary_of(columns: &ForceColumns, samples: impl Iterator<Item = Sample>) -> Summary {
-    let mut summary = Summary::new(N_COLUMNS);
-    let mut block = vec![0.0; BLOCK_ROWS * (N_COLUMNS + 1)];
-    let mut filled = 0;
+    let mut gathered = Gathered::new(N_COLUMNS);
     for (pressure_pa, length_m, direction, force_n) in samples {
         let row = columns.row(pressure_pa, length_m, direction);
-        if !row.iter().all(|value| value.is_finite()) {
-            continue;
-        }
-        for (column, value) in row.into_iter().chain([force_n]).enumerate() {
-            block[column * BLOCK_ROWS + filled] = value;
-        }
-        filled += 1;
-        if filled == BLOCK_ROWS {
-            summary.fold(&mut block, filled);
-            filled = 0;
+        if row.iter().all(|value| value.is_finite()) {
+            gathered.push(row.into_iter().chain([force_n]));
         }
     }
-    summary.fold_part(&mut block, filled);
-    summary
+    gathered.summary()
 }
 
 /// RMSE of the fit to the samples of a triangle, in N.

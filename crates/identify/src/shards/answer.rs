@@ -13,13 +13,14 @@ use pam_core::quality::parts::sampled_chunks;
 use pam_core::quality::stuck::StuckRuns;
 use pam_core::quality::{RecordingQuality, SensorEnds};
 use pam_core::recording::{CHUNK_ROWS, Recording};
+use pam_optim::gathered::Gathered;
 use rayon::prelude::*;
 
 use super::error::ShardError;
 use super::parts::{edges, parts};
 use super::tile::{Tile, rows_of};
 use super::triangle::{summary, triangle};
-use crate::condense::{Folding, fold_rows, plan};
+use crate::condense::{fold_rows, plan};
 use crate::error::IdentifyError;
 use crate::evaluate::{floor_stride, noise_squares, tally};
 use crate::faults::{shaken, spikes};
@@ -200,23 +201,23 @@ fn stretches(
     let here = of_recording.map(|(stretch, (_, rows))| (stretch, rows));
     let here: Vec<(usize, Range<usize>)> =
         here.filter(|(_, rows)| rows.start < owned.end && owned.start < rows.end).collect();
-    let folded: io::Result<Vec<Folding>> = here
+    let folded: io::Result<Vec<Gathered>> = here
         .par_iter()
         .map(|(_, rows)| {
             let begun = open.filter(|_| rows.start < owned.start);
-            let begun = begun.and_then(|open| Some(Folding::after(summary(&open.triangle)?, &open.waiting)));
-            let mut folding = begun.unwrap_or_else(|| Folding::new(N_COLUMNS));
+            let begun = begun.and_then(|open| Some(Gathered::after(summary(&open.triangle)?, &open.waiting)));
+            let mut gathered = begun.unwrap_or_else(|| Gathered::new(N_COLUMNS));
             let within = rows.start.max(owned.start) - tile.first_row..rows.end.min(owned.end) - tile.first_row;
-            fold_rows(&mut folding, prepared, within, &shared.columns, 1, None)?;
-            Ok(folding)
+            fold_rows(&mut gathered, prepared, within, &shared.columns, 1, None)?;
+            Ok(gathered)
         })
         .collect();
     let (mut parts, mut goes_on) = (Vec::new(), None);
-    for ((stretch, rows), folding) in here.into_iter().zip(folded?) {
+    for ((stretch, rows), gathered) in here.into_iter().zip(folded?) {
         if rows.end <= owned.end {
-            parts.push(StretchPart { stretch, triangle: triangle(&folding.finish()) });
+            parts.push(StretchPart { stretch, triangle: triangle(&gathered.summary()) });
         } else {
-            let (folded, waiting) = folding.open();
+            let (folded, waiting) = gathered.open();
             goes_on = Some(Open { triangle: triangle(folded), waiting });
         }
     }

@@ -1,6 +1,8 @@
 //! Content of the page, section by section.
 
-use super::{PageCoordinate, PageEmpirical, PageRecording};
+use pam_core::artifact::diagnosis::Coordinate;
+
+use super::{PageEmpirical, PageRecording};
 
 /// Everything that the page shows. Texts are plain: whatever they contain is shown as written.
 #[derive(Debug, Clone, PartialEq)]
@@ -149,7 +151,7 @@ pub struct PageFit {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PageRegion {
     /// Coordinate.
-    pub coordinate: PageCoordinate,
+    pub coordinate: Coordinate,
     /// Lower end, SI as in the artifact; the page converts it to the unit that people use.
     pub from: f64,
     /// Upper end, SI as in the artifact.

@@ -1,62 +1,29 @@
 //! Coordinates of a residual, in the units that people use.
 
+use pam_core::artifact::diagnosis::Coordinate;
+
 use crate::number::significant;
 
-/// A coordinate of a residual.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum PageCoordinate {
-    /// Time since the recording began.
-    Time,
-    /// Gauge pressure.
-    Pressure,
-    /// Contraction ratio.
-    Contraction,
-    /// Size of the speed.
-    Speed,
-    /// Travel since the last reversal.
-    TravelSinceReversal,
-    /// Time since the last move.
-    TimeSinceLastMove,
-    /// Cycle of motion.
-    Cycle,
-    /// Force as measured.
-    Force,
+/// A coordinate as people read it.
+pub(super) trait OnPage {
+    /// Name in words.
+    fn words(self) -> &'static str;
+
+    /// Unit that people use; empty where there is none.
+    fn shown_unit(self) -> &'static str;
+
+    /// Title of an axis, with unit.
+    fn axis_title(self) -> String;
+
+    /// An SI value in [`shown_unit`](Self::shown_unit).
+    fn of_si(self, value: f64) -> f64;
+
+    /// An interval of SI values as people write it: `0–1.2 mm`.
+    fn interval(self, from: f64, to: f64) -> String;
 }
 
-impl PageCoordinate {
-    /// Every coordinate.
-    pub const ALL: [Self; 8] = [
-        Self::Time,
-        Self::Pressure,
-        Self::Contraction,
-        Self::Speed,
-        Self::TravelSinceReversal,
-        Self::TimeSinceLastMove,
-        Self::Cycle,
-        Self::Force,
-    ];
-
-    /// The coordinate that an artifact calls `name`, such as `travel_since_reversal`.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|coordinate| coordinate.name() == name)
-    }
-
-    /// Name as in artifacts.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Pressure => "pressure",
-            Self::Contraction => "contraction",
-            Self::Speed => "speed",
-            Self::TravelSinceReversal => "travel_since_reversal",
-            Self::TimeSinceLastMove => "time_since_last_move",
-            Self::Cycle => "cycle",
-            Self::Force => "force",
-        }
-    }
-
-    /// Name in words.
-    pub(super) fn words(self) -> &'static str {
+impl OnPage for Coordinate {
+    fn words(self) -> &'static str {
         match self {
             Self::TravelSinceReversal => "travel since reversal",
             Self::TimeSinceLastMove => "time since last move",
@@ -64,8 +31,7 @@ impl PageCoordinate {
         }
     }
 
-    /// Unit that people use; empty where there is none.
-    pub(super) fn unit(self) -> &'static str {
+    fn shown_unit(self) -> &'static str {
         match self {
             Self::Time | Self::TimeSinceLastMove => "s",
             Self::Pressure => "kPa",
@@ -77,14 +43,12 @@ impl PageCoordinate {
         }
     }
 
-    /// Title of an axis, with unit.
-    pub(super) fn axis_title(self) -> String {
-        let (words, unit) = (self.words(), self.unit());
+    fn axis_title(self) -> String {
+        let (words, unit) = (self.words(), self.shown_unit());
         if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") }
     }
 
-    /// An SI value in [`unit`](Self::unit).
-    pub(super) fn of_si(self, value: f64) -> f64 {
+    fn of_si(self, value: f64) -> f64 {
         match self {
             Self::Time | Self::TimeSinceLastMove | Self::Cycle | Self::Force => value,
             Self::Pressure => 1e-3 * value,
@@ -93,10 +57,9 @@ impl PageCoordinate {
         }
     }
 
-    /// An interval of SI values as people write it: `0–1.2 mm`.
-    pub(super) fn interval(self, from: f64, to: f64) -> String {
+    fn interval(self, from: f64, to: f64) -> String {
         let (from, to) = (self.of_si(from), self.of_si(to));
-        let text = format!("{} to {} {}", rounded(from, to - from), rounded(to, to - from), self.unit());
+        let text = format!("{} to {} {}", rounded(from, to - from), rounded(to, to - from), self.shown_unit());
         text.trim_end().to_owned()
     }
 }
@@ -120,18 +83,10 @@ mod tests {
 
     #[test]
     fn intervals_are_written_in_units_that_people_use() {
-        assert_eq!(PageCoordinate::Pressure.interval(100e3, 250e3), "100 to 250 kPa");
-        assert_eq!(PageCoordinate::TravelSinceReversal.interval(0.0, 1.234e-3), "0 to 1.2 mm");
-        assert_eq!(PageCoordinate::TravelSinceReversal.interval(5e-5, 1.6e-3), "0.05 to 1.6 mm");
-        assert_eq!(PageCoordinate::Contraction.interval(-0.01, 0.213), "−1 to 21 %");
-        assert_eq!(PageCoordinate::Cycle.interval(1.0, 3.0), "1 to 3");
-    }
-
-    #[test]
-    fn names_are_found_again() {
-        for coordinate in PageCoordinate::ALL {
-            assert_eq!(PageCoordinate::from_name(coordinate.name()), Some(coordinate));
-        }
-        assert_eq!(PageCoordinate::from_name("length"), None);
+        assert_eq!(Coordinate::Pressure.interval(100e3, 250e3), "100 to 250 kPa");
+        assert_eq!(Coordinate::TravelSinceReversal.interval(0.0, 1.234e-3), "0 to 1.2 mm");
+        assert_eq!(Coordinate::TravelSinceReversal.interval(5e-5, 1.6e-3), "0.05 to 1.6 mm");
+        assert_eq!(Coordinate::Contraction.interval(-0.01, 0.213), "−1 to 21 %");
+        assert_eq!(Coordinate::Cycle.interval(1.0, 3.0), "1 to 3");
     }
 }

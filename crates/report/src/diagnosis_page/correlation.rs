@@ -176,6 +176,7 @@ fn stretches<'a>(
 mod tests {
     use super::*;
     use crate::diagnosis_page::PageRecording;
+    use pam_core::artifact::diagnosis::Coordinate;
 
     /// A residual of `e` and a pressure of `u`, at 100 Hz.
     fn samples(n: usize, e: impl Fn(usize) -> f64, u: impl Fn(usize) -> f64) -> Samples {
@@ -198,7 +199,7 @@ mod tests {
     }
 
     fn pressure(samples: &Samples) -> &[f64] {
-        samples.column(crate::PageCoordinate::Pressure)
+        samples.column(Coordinate::Pressure)
     }
 
     /// Noise between -1 and 1 that is the same every time.

@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use super::PageCoordinate;
+use pam_core::artifact::diagnosis::Coordinate;
+
+use super::coordinate::OnPage as _;
 use super::course::{parabola, running_means};
 use super::samples::{Samples, extent};
 use crate::FigureError;
@@ -18,7 +20,7 @@ pub(super) struct Stretch<'a> {
     samples: &'a Samples,
     model_n: &'a [f64],
     rows: Range<usize>,
-    coordinate: PageCoordinate,
+    coordinate: Coordinate,
     is_closed: bool,
 }
 
@@ -38,7 +40,7 @@ impl<'a> Stretch<'a> {
 
     /// Of the stretches whose mean square falls by much, the one in which that is most of what is to be seen: the less the
     /// force swings about its mean course, the larger the effects are drawn. A held-out one counts double.
-    fn best(candidates: impl Iterator<Item = (&'a Samples, PageCoordinate, Range<usize>, bool)>) -> Option<Self> {
+    fn best(candidates: impl Iterator<Item = (&'a Samples, Coordinate, Range<usize>, bool)>) -> Option<Self> {
         let mut found: Vec<(f64, f64, Self)> = Vec::new();
         for (samples, coordinate, rows, is_closed) in candidates.filter(|(_, _, rows, _)| rows.len() >= 2) {
             let (Some(model_n), Some(after_n)) = (&samples.model_n, &samples.after_n) else { continue };
@@ -63,21 +65,21 @@ impl<'a> Stretch<'a> {
 
     /// Where it lies, in words.
     pub(super) fn words(&self) -> String {
-        let time_s = self.samples.column(PageCoordinate::Time);
+        let time_s = self.samples.column(Coordinate::Time);
         let [from, to] = [time_s[self.rows.start], time_s[self.rows.end - 1]];
         let held_out = if self.samples.held_out { ", held out" } else { "" };
-        format!("{}{held_out}, {}", self.samples.name, PageCoordinate::Time.interval(from, to))
+        format!("{}{held_out}, {}", self.samples.name, Coordinate::Time.interval(from, to))
     }
 
-    fn column(&self, coordinate: PageCoordinate) -> &[f64] {
+    fn column(&self, coordinate: Coordinate) -> &[f64] {
         &self.samples.column(coordinate)[self.rows.clone()]
     }
 }
 
 /// The coordinate that the force is drawn over: contraction, or pressure where the muscle hardly moves.
-fn coordinate(samples: &Samples) -> PageCoordinate {
-    let (lowest, highest) = extent(samples.column(PageCoordinate::Contraction).iter().copied());
-    if highest - lowest > 1.0 { PageCoordinate::Contraction } else { PageCoordinate::Pressure }
+fn coordinate(samples: &Samples) -> Coordinate {
+    let (lowest, highest) = extent(samples.column(Coordinate::Contraction).iter().copied());
+    if highest - lowest > 1.0 { Coordinate::Contraction } else { Coordinate::Pressure }
 }
 
 /// Share of a recording's range by which both ends of a loop may differ, and that a turn has to come back by.
@@ -91,7 +93,7 @@ const FEWEST: usize = 40;
 
 /// Stretches from a turn of `coordinate` to the next one to the same side, cut where the two are level; pressure and
 /// contraction both end where they began.
-fn closed_loops(samples: &Samples, coordinate: PageCoordinate) -> Vec<Range<usize>> {
+fn closed_loops(samples: &Samples, coordinate: Coordinate) -> Vec<Range<usize>> {
     let x = samples.column(coordinate);
     let range = |values: &[f64]| {
         let (lowest, highest) = extent(values.iter().copied());
@@ -99,7 +101,7 @@ fn closed_loops(samples: &Samples, coordinate: PageCoordinate) -> Vec<Range<usiz
     };
     let span = range(x);
     let turns = turns(x, CLOSED_WITHIN * span);
-    let channels = [PageCoordinate::Pressure, PageCoordinate::Contraction].map(|channel| samples.column(channel));
+    let channels = [Coordinate::Pressure, Coordinate::Contraction].map(|channel| samples.column(channel));
     let mut loops = Vec::new();
     for three in turns.windows(3) {
         let [first, middle, last] = [three[0], three[1], three[2]];

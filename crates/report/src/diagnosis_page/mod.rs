@@ -43,7 +43,6 @@ pub use content::{
     PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter,
     PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
 };
-pub use coordinate::PageCoordinate;
 pub use empirical::{PageEmpirical, PageTerm};
 pub use recording::PageRecording;
 

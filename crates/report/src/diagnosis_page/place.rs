@@ -1,5 +1,6 @@
 //! Section: where model and recordings differ.
 
+use super::coordinate::OnPage as _;
 use super::samples::Samples;
 use super::{DiagnosisPage, PageRegion};
 use super::{profiles, residual_maps};

@@ -1,21 +1,24 @@
 //! Figure: residual against each coordinate, as small multiples of one height.
 
+use pam_core::artifact::diagnosis::Coordinate;
+
+use super::PageRegion;
+use super::coordinate::OnPage as _;
 use super::samples::{Samples, extent};
-use super::{PageCoordinate, PageRegion};
 use crate::FigureError;
 use crate::page::style::{AFTER, BEFORE, MARKED, NOISE};
 use crate::plot::{Anchor, Axis, Canvas, Color, Key, Mark, Panel, Rect, legend, note, palette};
 use crate::residual_cells::quantile;
 
 /// Coordinates shown, row by row.
-const SHOWN: [PageCoordinate; 7] = [
-    PageCoordinate::TravelSinceReversal,
-    PageCoordinate::TimeSinceLastMove,
-    PageCoordinate::Speed,
-    PageCoordinate::Cycle,
-    PageCoordinate::Pressure,
-    PageCoordinate::Contraction,
-    PageCoordinate::Force,
+const SHOWN: [Coordinate; 7] = [
+    Coordinate::TravelSinceReversal,
+    Coordinate::TimeSinceLastMove,
+    Coordinate::Speed,
+    Coordinate::Cycle,
+    Coordinate::Pressure,
+    Coordinate::Contraction,
+    Coordinate::Force,
 ];
 const COLUMNS: usize = 4;
 /// Size of a panel with its axis and title, in pixels.
@@ -72,14 +75,14 @@ struct Bin {
 }
 
 struct Profile {
-    coordinate: PageCoordinate,
+    coordinate: Coordinate,
     axis: Axis,
     before: Vec<Option<Bin>>,
     after: Vec<Option<Bin>>,
 }
 
 impl Profile {
-    fn new(coordinate: PageCoordinate, recordings: &[Samples]) -> Self {
+    fn new(coordinate: Coordinate, recordings: &[Samples]) -> Self {
         let axis = axis(coordinate, recordings);
         let bins = |residual: fn(&Samples) -> Option<&[f64]>| {
             let n_bins = n_bins(coordinate, &axis);
@@ -157,13 +160,13 @@ fn draw_bins(canvas: &mut Canvas<'_>, panel: &Panel, bins: &[Option<Bin>], color
 }
 
 /// One bin per cycle, where they are few.
-fn n_bins(coordinate: PageCoordinate, axis: &Axis) -> usize {
+fn n_bins(coordinate: Coordinate, axis: &Axis) -> usize {
     let span = axis.to - axis.from;
-    if coordinate == PageCoordinate::Cycle && span <= 40.0 { (span.round() as usize).max(1) } else { BINS }
+    if coordinate == Coordinate::Cycle && span <= 40.0 { (span.round() as usize).max(1) } else { BINS }
 }
 
-fn axis(coordinate: PageCoordinate, recordings: &[Samples]) -> Axis {
-    let title = coordinate.unit().to_owned();
+fn axis(coordinate: Coordinate, recordings: &[Samples]) -> Axis {
+    let title = coordinate.shown_unit().to_owned();
     let title = if title.is_empty() { "number".to_owned() } else { title };
     let values: Vec<f64> = recordings
         .iter()
@@ -172,13 +175,11 @@ fn axis(coordinate: PageCoordinate, recordings: &[Samples]) -> Axis {
         .map(|(value, _)| *value)
         .collect();
     let (lowest, highest) = extent(values.iter().copied());
-    if coordinate == PageCoordinate::Cycle {
+    if coordinate == Coordinate::Cycle {
         return Axis::exact(title, lowest.floor() - 0.5, highest.floor() + 0.5, 5);
     }
-    let skewed = matches!(
-        coordinate,
-        PageCoordinate::TravelSinceReversal | PageCoordinate::TimeSinceLastMove | PageCoordinate::Speed
-    );
+    let skewed =
+        matches!(coordinate, Coordinate::TravelSinceReversal | Coordinate::TimeSinceLastMove | Coordinate::Speed);
     if skewed {
         // The small values matter: after the reversal, right after the stop.
         let positive: Vec<f64> = values.iter().copied().filter(|value| *value > 0.0).collect();

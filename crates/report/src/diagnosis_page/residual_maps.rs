@@ -1,7 +1,10 @@
 //! Figure: residual over pressure and contraction, before and after, mean and root mean square.
 
+use pam_core::artifact::diagnosis::Coordinate;
+
+use super::PageRegion;
+use super::coordinate::OnPage as _;
 use super::samples::Samples;
-use super::{PageCoordinate, PageRegion};
 use crate::FigureError;
 use crate::page::style::{mean_color, size_color};
 use crate::plot::{Anchor, Axis, Canvas, Color, ColorBar, Map, Panel, Rect, palette};
@@ -18,8 +21,8 @@ pub(super) fn residual_maps(
 ) -> Result<String, FigureError> {
     let after = recordings.iter().any(|samples| samples.after_n.is_some());
     let pick = |coordinate| recordings.iter().map(|samples: &Samples| samples.column(coordinate)).collect();
-    let pressure = Channel::new("pressure (kPa)", pick(PageCoordinate::Pressure), 0.05, 0, 26);
-    let contraction = Channel::new("contraction (%)", pick(PageCoordinate::Contraction), 0.015, 1, 18);
+    let pressure = Channel::new("pressure (kPa)", pick(Coordinate::Pressure), 0.05, 0, 26);
+    let contraction = Channel::new("contraction (%)", pick(Coordinate::Contraction), 0.015, 1, 18);
     let grid = Grid { pressure, contraction };
     let before_cells = grid.sums(recordings, |samples| &samples.before_n);
     let after_cells = grid.sums(recordings, Samples::last_n);
@@ -70,11 +73,11 @@ fn mark(canvas: &mut Canvas<'_>, grid: &Grid<'_>, panel: &Panel, region: &PageRe
     let within = |axis: &Axis, value: f64| axis.fraction(value).clamp(0.0, 1.0);
     let Rect { left, top, right, bottom } = panel.frame;
     match region.coordinate {
-        PageCoordinate::Pressure if grid.pressure.is_scale() => {
+        Coordinate::Pressure if grid.pressure.is_scale() => {
             let at = |value| left + within(&panel.x, value) * panel.frame.width();
             canvas.rect(Rect { left: at(from), right: at(to), top: top - 7.0, bottom: top - 3.0 }, COLOR);
         }
-        PageCoordinate::Contraction if grid.contraction.is_scale() => {
+        Coordinate::Contraction if grid.contraction.is_scale() => {
             let at = |value| bottom - within(&panel.y, value) * panel.frame.height();
             canvas.rect(Rect { left: right + 3.0, right: right + 7.0, top: at(to), bottom: at(from) }, COLOR);
         }

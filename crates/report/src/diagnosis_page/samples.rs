@@ -1,6 +1,8 @@
 //! A recording reduced to the samples that can be shown.
 
-use super::{PageCoordinate, PageRecording};
+use pam_core::artifact::diagnosis::Coordinate;
+
+use super::PageRecording;
 use crate::FigureError;
 
 /// Samples of one recording with finite forces.
@@ -17,7 +19,7 @@ pub(crate) struct Samples {
     pub(crate) before_n: Vec<f64>,
     /// Measured force less that of base and effects.
     pub(crate) after_n: Option<Vec<f64>>,
-    /// In the order of [`PageCoordinate::ALL`].
+    /// In the order of [`Coordinate::ALL`].
     columns: [Vec<f64>; 8],
 }
 
@@ -44,18 +46,18 @@ impl Samples {
             model_n: model.map(pick),
             before_n: less(&recording.base_force_n),
             after_n: model.map(less),
-            columns: PageCoordinate::ALL.map(|coordinate| pick(column_of(recording, coordinate))),
+            columns: Coordinate::ALL.map(|coordinate| pick(column_of(recording, coordinate))),
         })
     }
 
-    pub(crate) fn column(&self, coordinate: PageCoordinate) -> &[f64] {
-        let at = PageCoordinate::ALL.iter().position(|other| *other == coordinate);
+    pub(crate) fn column(&self, coordinate: Coordinate) -> &[f64] {
+        let at = Coordinate::ALL.iter().position(|other| *other == coordinate);
         &self.columns[at.unwrap_or(0)]
     }
 
     /// Time, in s.
     pub(crate) fn time_s(&self) -> &[f64] {
-        self.column(PageCoordinate::Time)
+        self.column(Coordinate::Time)
     }
 
     /// Root mean square of `residual_n` over all samples.
@@ -77,16 +79,16 @@ impl Samples {
     }
 }
 
-fn column_of(recording: &PageRecording, coordinate: PageCoordinate) -> &[f64] {
+fn column_of(recording: &PageRecording, coordinate: Coordinate) -> &[f64] {
     match coordinate {
-        PageCoordinate::Time => &recording.time_s,
-        PageCoordinate::Pressure => &recording.pressure_kpa,
-        PageCoordinate::Contraction => &recording.contraction_percent,
-        PageCoordinate::Speed => &recording.speed_mm_per_s,
-        PageCoordinate::TravelSinceReversal => &recording.travel_mm,
-        PageCoordinate::TimeSinceLastMove => &recording.rest_s,
-        PageCoordinate::Cycle => &recording.cycle,
-        PageCoordinate::Force => &recording.base_force_n,
+        Coordinate::Time => &recording.time_s,
+        Coordinate::Pressure => &recording.pressure_kpa,
+        Coordinate::Contraction => &recording.contraction_percent,
+        Coordinate::Speed => &recording.speed_mm_per_s,
+        Coordinate::TravelSinceReversal => &recording.travel_mm,
+        Coordinate::TimeSinceLastMove => &recording.rest_s,
+        Coordinate::Cycle => &recording.cycle,
+        Coordinate::Force => &recording.base_force_n,
     }
 }
 

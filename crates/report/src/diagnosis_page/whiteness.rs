@@ -1,6 +1,7 @@
 //! Whether the residual is white, and whether it still follows the channels.
 
-use super::PageCoordinate;
+use pam_core::artifact::diagnosis::Coordinate;
+
 use super::correlation::{Correlation, autocorrelation, cross_correlation};
 use super::samples::Samples;
 use crate::FigureError;
@@ -28,8 +29,8 @@ pub(super) fn whiteness(recordings: &[Samples]) -> Result<String, FigureError> {
             after.then(|| cross_correlation(chosen(), Samples::last_n, channel)).flatten(),
         )
     };
-    let pressure = cross(|samples| samples.column(PageCoordinate::Pressure));
-    let length = cross(|samples| samples.column(PageCoordinate::Contraction));
+    let pressure = cross(|samples| samples.column(Coordinate::Pressure));
+    let length = cross(|samples| samples.column(Coordinate::Contraction));
     let auto_after = after.then(|| autocorrelation(chosen(), Samples::last_n)).flatten();
     let panels: [Shown; 3] = [
         ("Residual with itself", autocorrelation(chosen(), before_n), auto_after),

@@ -5,6 +5,7 @@ use crate::draw::Dice;
 use crate::friction::{Element, Friction};
 use crate::muscle::{Muscle, StaticForce};
 use crate::noise::Color;
+use crate::plan::{self, Kinds};
 use crate::protocol::{KINDS as USUAL_KINDS, Kind};
 use crate::region::{Load, Region, Regulator};
 use crate::sensors::{Sensor, Sensors};
@@ -79,48 +80,13 @@ fn read_lines(sensor: &mut Sensor, apart_m: f64) {
 
 /// Protocols and durations in s, estimation first, and how many are for estimation.
 pub fn draw_plan(dice: &mut Dice, demands: &Demands, rate_hz: f64) -> (Vec<(Kind, f64)>, usize) {
-    let rich = dice.chance(0.8) || !demands.wants.is_empty() && dice.chance(0.3);
-    let count = if rich { dice.between(3, if demands.slow { 4 } else { 6 }) } else { dice.between(1, 2) };
-    let any = |dice: &mut Dice| if dice.chance(0.2) { *dice.pick(&USUAL_KINDS) } else { *dice.pick(&KINDS) };
-    let mut kinds: Vec<Kind> = Vec::new();
-    if !demands.wants.is_empty() {
-        kinds.push(*dice.pick(&demands.wants));
-    }
-    if rich {
-        // Enough excitation: both pressure and length vary widely.
-        kinds.push(*dice.pick(&[Kind::GrowingSpiral, Kind::QuickRelease]));
-        kinds.push(*dice.pick(&[Kind::Staircase, Kind::RandomSteps]));
-    }
-    while kinds.len() < count {
-        let kind = any(dice);
-        if !kinds.contains(&kind) || dice.chance(0.2) {
-            kinds.push(kind);
-        }
-    }
-    kinds.truncate(count);
-    dice.shuffle(&mut kinds);
-    let estimation = kinds.len();
-    kinds.push(if dice.chance(0.6) { *dice.pick(&[Kind::RandomSteps, Kind::GrowingSpiral]) } else { any(dice) });
-    if dice.chance(0.5) {
-        kinds.push(any(dice));
-    }
-    let rows = if demands.slow { 14_000.0 } else { 12_000.0 };
-    let plan = kinds
-        .into_iter()
-        .map(|kind| {
-            let drawn_s = if demands.slow {
-                dice.log_uniform(90.0, 360.0)
-            } else {
-                match dice.weighted(&[0.1, 0.78, 0.12]) {
-                    0 => dice.uniform(10.0, 30.0),
-                    1 => dice.uniform(30.0, 90.0),
-                    _ => dice.log_uniform(90.0, 400.0),
-                }
-            };
-            (kind, drawn_s.min(rows / rate_hz).max(10.0).round())
-        })
-        .collect();
-    (plan, estimation)
+    let kinds = Kinds {
+        telling: [&[Kind::GrowingSpiral, Kind::QuickRelease], &[Kind::Staircase, Kind::RandomSteps]],
+        any: |dice| if dice.chance(0.2) { *dice.pick(&USUAL_KINDS) } else { *dice.pick(&KINDS) },
+        held_out: |dice| *dice.pick(&[Kind::RandomSteps, Kind::GrowingSpiral]),
+        longest_s: 400.0,
+    };
+    plan::draw(dice, demands, rate_hz, &kinds)
 }
 
 /// A regulator that holds whatever comes, or one that sags by some kilopascals while the muscle contracts.

@@ -1,5 +1,6 @@
 //! Leave one out: an effect is concealed and taken out of the catalogue, so that only a term without a name can model it.
 
+use pam_core::effects::effect;
 use serde::Serialize;
 
 use super::ceiling::median;
@@ -18,32 +19,6 @@ pub struct LeftOut {
     /// Error of the augmented model over all samples of the hold-outs, N.
     pub error_n: f64,
 }
-
-/// Drivers that say what an effect of the catalogue depends on.
-const DRIVERS: &[(&str, &[&str])] = &[
-    ("braid-lockup", &["contraction"]),
-    ("channel-delay", &["pressure", "speed"]),
-    ("end-taper", &["contraction"]),
-    ("fatigue-wear", &["cycle", "time"]),
-    ("force-drift", &["time"]),
-    ("force-step", &["time"]),
-    ("inertia", &["speed"]),
-    ("load-dependent-friction", &["force", "pressure"]),
-    ("mullins-softening", &["contraction"]),
-    ("presliding-hysteresis", &["travel-since-reversal", "contraction"]),
-    ("pressure-creep", &["pressure", "time-since-pressure-moved", "time-since-last-move"]),
-    ("pressure-gauge-hysteresis", &["pressure"]),
-    ("pressure-lag", &["pressure"]),
-    ("rate-dependent-hysteresis", &["speed"]),
-    ("rubber-hysteresis", &["contraction", "travel-since-reversal"]),
-    ("series-compliance", &["force"]),
-    ("slack", &["contraction", "force"]),
-    ("stribeck", &["speed"]),
-    ("thermal-softening", &["time", "cycle"]),
-    ("threshold-pressure", &["pressure"]),
-    ("viscoelastic-relaxation", &["contraction", "time-since-last-move"]),
-    ("viscous-damping", &["speed"]),
-];
 
 /// What was said over a number of cases, each without its effect.
 #[derive(Debug, Clone, Serialize)]
@@ -76,7 +51,7 @@ impl Without {
         let is_found = |(_, without): &(&Score, &LeftOut)| without.discovered.is_some();
         let has_driver = |(score, without): &(&Score, &LeftOut)| {
             let id = score.truth.ids.first().map_or("", String::as_str);
-            let drivers = DRIVERS.iter().find(|(known, _)| *known == id).map_or(&[][..], |(_, drivers)| drivers);
+            let drivers = effect(id).map_or(&[][..], |effect| effect.page().drivers);
             without.discovered.as_ref().is_some_and(|found| drivers.contains(&found.driver.as_str()))
         };
         (!cases.is_empty()).then(|| Self {
@@ -91,17 +66,8 @@ impl Without {
 
 #[cfg(test)]
 mod tests {
-    use pam_core::effects::CATALOGUE;
-
     use super::super::score::{Answer, Concealed, score};
     use super::*;
-
-    #[test]
-    fn every_effect_of_the_catalogue_has_a_driver() {
-        let ids: Vec<&str> = CATALOGUE.iter().map(|effect| effect.page().id).collect();
-        assert!(ids.iter().all(|id| DRIVERS.iter().any(|(known, _)| known == id)), "{ids:?}");
-        assert_eq!(DRIVERS.len(), ids.len());
-    }
 
     #[test]
     fn only_effects_that_are_found_by_name_are_compared() {

@@ -17,8 +17,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Argument, Curve, Driver, Recall, Scale, Sentence, own};
-use crate::artifact::diagnosis::Coordinate;
-use crate::effects::page::{Page, Symbol};
+use crate::effects::page::{Page, Symbol, Typical};
 use crate::effects::{Amplitude, CATALOGUE, Effect, Kind, Memory, NAMELESS, Role, Shape};
 use crate::muscle::Muscle;
 use crate::spelling::toml_fault;
@@ -282,18 +281,19 @@ fn shape(free: &Free, sentence: &Sentence) -> Shape {
     let looks = |share: f64| if free.is_place { low + share * (high - low) } else { low * (high / low).powf(share) };
     let n = if free.is_place { LOOKS.1 } else { LOOKS.0 };
     let grid: Vec<f64> = (0..n).map(|index| looks((index as f64 + 0.5) / n as f64)).collect();
-    Shape { name: free.name.clone().leak(), unit, range: (low, high), grid: grid.leak() }
+    let name = free.name.clone().leak();
+    Shape { name, symbol: symbol(name), unit, range: (low, high), grid: grid.leak() }
 }
 
 fn page(written: &WrittenEffect, sentence: &Sentence, shape: &[Shape], amplitudes: &[Amplitude]) -> Page {
-    let ranged = |name: &'static str, unit: &'static str, (low, high): (f64, f64)| Symbol {
-        symbol: symbol(name),
+    let ranged = |name: &'static str, symbol: &'static str, unit: &'static str, (low, high): (f64, f64)| Symbol {
+        symbol,
         unit,
         meaning: format!("{name}; fitted, {low} to {high}").leak(),
     };
-    let shapes = shape.iter().map(|shape| ranged(shape.name, shape.unit, shape.range));
-    let symbols: Vec<Symbol> =
-        shapes.chain(amplitudes.iter().map(|one| ranged(one.name, one.unit, one.range))).collect();
+    let shapes = shape.iter().map(|shape| ranged(shape.name, shape.symbol, shape.unit, shape.range));
+    let amplitudes = amplitudes.iter().map(|one| ranged(one.name, one.symbol, one.unit, one.range));
+    let symbols: Vec<Symbol> = shapes.chain(amplitudes).collect();
     let given = |text: &Option<String>, otherwise: &'static str| match text {
         Some(text) => text.clone().leak(),
         None => otherwise,
@@ -310,16 +310,10 @@ fn page(written: &WrittenEffect, sentence: &Sentence, shape: &[Shape], amplitude
         confused_with: &[],
         test: "a further recording in which its driver moves while everything else rests",
         protocol: "multisine",
-        coordinate: match sentence.driver {
-            Driver::Pressure => Coordinate::Pressure,
-            Driver::Contraction => Coordinate::Contraction,
-            Driver::Speed => Coordinate::Speed,
-            Driver::Force => Coordinate::Force,
-            Driver::Time => Coordinate::Time,
-            Driver::TravelSinceReversal => Coordinate::TravelSinceReversal,
-            Driver::TimeSinceLastMove { .. } | Driver::TimeSincePressureMoved { .. } => Coordinate::TimeSinceLastMove,
-            Driver::Cycle => Coordinate::Cycle,
-        },
+        coordinate: sentence.driver.coordinate(),
+        typical: Typical::UNKNOWN,
+        regions: &[],
+        drivers: &[],
     }
 }
 

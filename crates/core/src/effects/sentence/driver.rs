@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Sentence;
 use super::recall::Recalled;
+use crate::artifact::diagnosis::Coordinate;
 use crate::effects::{Base, Moment};
 
 /// What drives a sentence; see the [module](self) for values and units.
@@ -78,6 +79,20 @@ impl Driver {
             Self::TimeSinceLastMove { .. } => "time-since-last-move",
             Self::TimeSincePressureMoved { .. } => "time-since-pressure-moved",
             Self::Cycle => "cycle",
+        }
+    }
+
+    /// Coordinate over which a residual shows what it drives.
+    pub fn coordinate(&self) -> Coordinate {
+        match self {
+            Self::Pressure => Coordinate::Pressure,
+            Self::Contraction => Coordinate::Contraction,
+            Self::Speed => Coordinate::Speed,
+            Self::Force => Coordinate::Force,
+            Self::Time => Coordinate::Time,
+            Self::TravelSinceReversal => Coordinate::TravelSinceReversal,
+            Self::TimeSinceLastMove { .. } | Self::TimeSincePressureMoved { .. } => Coordinate::TimeSinceLastMove,
+            Self::Cycle => Coordinate::Cycle,
         }
     }
 

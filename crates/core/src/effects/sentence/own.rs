@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::{Argument, Curve, Driver, Recall, Sentence};
 use crate::artifact::diagnosis::Coordinate;
-use crate::effects::page::{Page, Symbol};
+use crate::effects::page::{Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
@@ -49,17 +49,20 @@ fn amplitudes(sentence: &Sentence) -> Vec<Amplitude> {
             let steepest = largest / low.abs().max(high.abs()).max(f64::MIN_POSITIVE);
             vec![Amplitude {
                 name: "slope",
+                symbol: "a",
                 unit: quotient(unit, sentence.memory.unit(&sentence.driver)),
                 range: (-steepest, steepest),
             }]
         }
-        Curve::Saturation { .. } => vec![Amplitude { name: "limit", unit, range: (-largest, largest) }],
-        Curve::Bump { .. } => vec![Amplitude { name: "height", unit, range: (-largest, largest) }],
+        Curve::Saturation { .. } => vec![Amplitude { name: "limit", symbol: "a", unit, range: (-largest, largest) }],
+        Curve::Bump { .. } => vec![Amplitude { name: "height", symbol: "a", unit, range: (-largest, largest) }],
         Curve::Monotone { knots } => (1..knots.len())
-            .map(|index| Amplitude { name: format!("rise_{index}").leak(), unit, range: (-largest, largest) })
+            .map(|index| format!("rise_{index}").leak())
+            .map(|name| Amplitude { name, symbol: name, unit, range: (-largest, largest) })
             .collect(),
         Curve::Spline { knots } => (0..knots.len())
-            .map(|index| Amplitude { name: format!("value_{}", index + 1).leak(), unit, range: (-largest, largest) })
+            .map(|index| format!("value_{}", index + 1).leak())
+            .map(|name| Amplitude { name, symbol: name, unit, range: (-largest, largest) })
             .collect(),
     }
 }
@@ -157,6 +160,9 @@ static PAGE: Page = Page {
     test: "a further recording in which its driver moves while everything else rests",
     protocol: "multisine",
     coordinate: Coordinate::Contraction,
+    typical: Typical::UNKNOWN,
+    regions: &[],
+    drivers: &[],
 };
 
 #[cfg(test)]

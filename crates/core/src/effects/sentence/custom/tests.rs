@@ -1,4 +1,5 @@
 use super::*;
+use crate::artifact::diagnosis::Coordinate;
 use crate::effects::moment::tests::{base, pull, still};
 use crate::muscle::tests::nominal;
 

@@ -1,0 +1,110 @@
+use super::*;
+
+use pam_core::artifact::ModelArtifact;
+use pam_core::artifact::diagnosis::DiagnoseConfig;
+use pam_identification::prepare::Prepared;
+
+use crate::diagnose::{Request, diagnose};
+use crate::given::tests::{RAMPS, STROKES, artifact, recorded};
+
+/// Four samples, of which the last does not count.
+fn trace_of(pressure_pa: [f64; 4], missed_n: [f64; 4]) -> Trace {
+    Trace {
+        time_s: vec![0.0, 0.1, 0.2, 0.3],
+        pressure_pa: pressure_pa.to_vec(),
+        length_m: vec![0.25, 0.24, 0.23, 0.22],
+        force_n: missed_n.map(|missed_n| 100.0 + missed_n).to_vec(),
+        model_n: vec![100.0; 4],
+        direction: vec![1.0; 4],
+        settled: vec![true, true, true, false],
+    }
+}
+
+/// The same strokes, begun a little later.
+fn later(time_s: f64) -> (f64, f64) {
+    STROKES(time_s + 4.0)
+}
+
+/// The same strokes at pressures that no other recording has.
+fn high(time_s: f64) -> (f64, f64) {
+    let (pressure_pa, length_m) = STROKES(time_s);
+    (pressure_pa + 5e5, length_m)
+}
+
+/// What is said of recordings that were held out of a diagnosis of the model's own muscle.
+fn held(holdout: Vec<Prepared>) -> Held {
+    let model = artifact();
+    let own = |name, path| recorded(name, path, &model, 1.0).recording;
+    let found = diagnose(Request {
+        estimation: vec![own("strokes.csv", STROKES), own("ramps.csv", RAMPS)],
+        holdout: holdout.into_iter().map(|prepared| prepared.recording).collect(),
+        model,
+        config: DiagnoseConfig { matters_above_n: None, max_effects: 1, excluded: Vec::new() },
+        effects: Vec::new(),
+        rig: Vec::new(),
+        accept_implausible: true,
+    })
+    .expect("a diagnosis");
+    let agreement = Agreement::of(&found).expect("agreement");
+    judge(&found, &agreement).expect("a judgment")
+}
+
+/// The model with half of the friction and less of a gas force that narrows sooner: another muscle.
+fn another() -> ModelArtifact {
+    let mut model = artifact();
+    for entry in &mut model.parameters {
+        match entry.name.as_str() {
+            "k2" => entry.value *= 1.12,
+            "c10" | "c01" => entry.value *= 1.8,
+            _ => (),
+        }
+    }
+    model
+}
+
+#[test]
+fn only_samples_where_fitted_recordings_have_been_are_judged_there() {
+    let coverage = Coverage::of(&[trace_of([1e5, 1.1e5, 1.2e5, 1.3e5], [0.0; 4])]);
+    let all = within(&trace_of([1e5, 1.1e5, 1.2e5, 1.3e5], [1.0; 4]), &coverage);
+    assert_eq!((all.time_s.len(), all.settled.len()), (4, 4));
+    let some = within(&trace_of([1e5, 9e5, 1.2e5, 9e5], [1.0, 2.0, 3.0, 4.0]), &coverage);
+    assert_eq!(some.time_s, [0.0, 0.2]);
+    assert_eq!(some.force_n, [101.0, 103.0]);
+    assert_eq!(some.settled, [true, true]);
+}
+
+#[test]
+fn what_is_left_is_a_root_mean_square_over_what_counts() {
+    let trace = trace_of([1e5; 4], [3.0, -4.0, 0.0, 1e3]);
+    assert!((rmse_n(&trace) - (25.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+    let nothing = Trace { settled: vec![false; 4], ..trace };
+    assert_eq!(rmse_n(&nothing), 0.0);
+}
+
+#[test]
+fn a_hold_out_of_the_same_muscle_is_not_missed() {
+    let held = held(vec![recorded("again.csv", later, &artifact(), 1.0)]);
+    assert!(held.missed.is_empty() && held.elsewhere.is_empty() && held.unjudged.is_empty(), "{held:?}");
+}
+
+#[test]
+fn a_load_cell_that_reads_too_much_is_the_reason_where_it_explains_a_hold_out() {
+    let held = held(vec![recorded("gain.csv", STROKES, &artifact(), 1.15)]);
+    let [missed] = &held.missed[..] else { panic!("{held:?}") };
+    assert!(missed.starts_with("gain.csv is missed by") && missed.contains("force"), "{missed}");
+    assert!(!missed.contains("another muscle"), "{missed}");
+}
+
+#[test]
+fn a_hold_out_of_another_muscle_is_said_to_be_one() {
+    let held = held(vec![recorded("other.csv", STROKES, &another(), 1.0)]);
+    let [missed] = &held.missed[..] else { panic!("{held:?}") };
+    assert!(missed.starts_with("other.csv is missed by"), "{missed}");
+}
+
+#[test]
+fn a_hold_out_far_from_every_fitted_recording_says_nothing_of_the_muscle() {
+    let held = held(vec![recorded("high.csv", high, &another(), 1.0)]);
+    assert!(held.elsewhere.iter().any(|said| said.starts_with("high.csv is at pressures and lengths")), "{held:?}");
+    assert!(held.missed.iter().all(|said| !said.contains("another muscle")), "{held:?}");
+}

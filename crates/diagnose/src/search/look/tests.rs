@@ -1,0 +1,147 @@
+use super::*;
+
+use pam_core::effects::effect;
+
+use crate::hypothesis::Sign;
+use crate::rehearsal::tests::Given;
+use crate::search::judged;
+
+const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
+
+/// What a look needs that stands still, of recordings whose sensors leave 0.3 N.
+struct Desk {
+    given: Given,
+    coordinates: Coordinates,
+    seen: Seen,
+    limits: Limits,
+}
+
+impl Desk {
+    fn of(effects: &[(&'static str, &[f64], &[f64])]) -> Self {
+        let mut given = Given::of(&PROTOCOLS, effects);
+        given.disturb();
+        let (coordinates, seen) = (Coordinates::of(&given.track), Seen::of(given.track.instants.iter()));
+        Self { given, coordinates, seen, limits: Limits::of_test(3, 0.3) }
+    }
+
+    /// What `ask` finds in a look beside the base model.
+    fn look<T>(&self, ask: impl FnOnce(&Look<'_>, &Judged) -> T) -> T {
+        let given = &self.given;
+        let setting = Setting { floor_square: 0.09, ..given.setting() };
+        let plain_nuisance = Nuisance::of_recordings(&given.track, 0.3);
+        let map = plain_nuisance.with_map(&given.track, &self.coordinates);
+        let free = plain_nuisance.with_free_map(&given.track, &self.coordinates);
+        let (plain, mapped) = (setting.beside(&plain_nuisance), setting.beside(&map));
+        let base = judged(&plain, plain.fit(Vec::new(), &given.start, &given.model).expect("a fit")).expect("folds");
+        let (coordinates, seen, limits) = (&self.coordinates, &self.seen, &self.limits);
+        ask(&Look { plain: &plain, mapped: &mapped, free: &free, coordinates, seen, limits }, &base)
+    }
+
+    /// Ids of the trials on top of the base model, best first.
+    fn tried(&self) -> Vec<&'static str> {
+        self.look(|look, base| {
+            let tried = look.trials(base, &Shapes::new()).expect("a look");
+            assert!(tried.is_sorted_by(|left, right| left.trial.log_ratio >= right.trial.log_ratio));
+            tried.iter().map(|tried| tried.trial.guess.id()).collect()
+        })
+    }
+
+    /// The effect that stands for the static map.
+    fn of_the_map(&self) -> Option<&'static str> {
+        self.look(|look, base| Some(look.static_effect(base, base, 0.02)?.state.guesses[0].id()))
+    }
+}
+
+/// A trial of an effect, of the evidence given.
+fn trial(id: &str, log_ratio: f64) -> Trial {
+    let effect = effect(id).expect("an id");
+    let shape = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
+    let guess = CandidateEffect { effect, shape, sign: Sign::Any, beginning: Beginning::Fresh };
+    let held_out = HeldOut { blocks: vec![1.0], counts: vec![1.0], floor_square: 0.0 };
+    Trial { guess, mean_square: 1.0, held_out, log_ratio }
+}
+
+fn tried(id: &str, log_ratio: f64) -> Tried {
+    let trial = trial(id, log_ratio);
+    Tried { before: trial.held_out.clone(), trial }
+}
+
+#[test]
+fn what_a_map_takes_up_in_any_muscle_is_of_the_sensors_or_of_the_range_of_the_force() {
+    // Five times what the sensors leave, or the share of the range, whichever is more.
+    assert!((form_square(1.0, 100.0, 0.0045) - 25.0).abs() < 1e-12);
+    assert!((form_square(0.1, 1000.0, 0.0045) - 4.5 * 4.5).abs() < 1e-12);
+}
+
+#[test]
+fn only_trials_that_come_near_the_best_promise_anything() {
+    let look = [tried("pressure-lag", 10.0), tried("channel-delay", 2.0), tried("force-drift", 1.5)];
+    let promising: Vec<&str> = promise(&look).map(|(id, _)| id).collect();
+    assert_eq!(promising, ["pressure-lag", "channel-delay"]);
+    // Where the best is hardly anything, nothing promises.
+    assert_eq!(promise(&[tried("pressure-lag", 0.29)]).count(), 0);
+    assert_eq!(promise(&[]).count(), 0);
+}
+
+#[test]
+fn a_look_finds_the_lag_that_is_there_before_everything_else() {
+    let ids = Desk::of(&[("pressure-lag", &[0.15], &[])]).tried();
+    assert_eq!(ids[0], "pressure-lag");
+    // Beside a map that bends, a smooth static effect is one more bend.
+    assert!(!ids.contains(&"end-taper"), "{ids:?}");
+    assert!(ids.contains(&"threshold-pressure"), "{ids:?}");
+}
+
+#[test]
+fn what_is_excluded_is_neither_tried_nor_said_not_to_have_been() {
+    let mut desk = Desk::of(&[("pressure-lag", &[0.15], &[])]);
+    desk.limits.excluded.push("pressure-lag".to_owned());
+    assert!(!desk.tried().contains(&"pressure-lag"));
+    let missing = desk.look(|look, base| look.not_tried(base, &[trial("slack", 1.0)]));
+    let ids: Vec<&str> = missing.iter().map(|trial| trial.guess.id()).collect();
+    assert!(!ids.contains(&"pressure-lag") && !ids.contains(&"slack"), "{ids:?}");
+    assert_eq!(ids.len(), desk.given.setting().effects.len() - 2);
+    assert!(missing.iter().all(|trial| trial.log_ratio == 0.0));
+}
+
+#[test]
+fn smooth_static_effects_are_looked_at_without_the_map_that_stands_for_them() {
+    let statics = Desk::of(&[]).look(|look, base| look.smooth_statics(base)).expect("a look");
+    assert!(!statics.is_empty());
+    let is_smooth = |trial: &Trial| trial.guess.effect.is_static() && !trial.guess.effect.is_local();
+    assert!(statics.iter().all(is_smooth));
+}
+
+#[test]
+fn a_map_that_takes_up_no_more_than_any_muscle_asks_for_stands_for_no_effect() {
+    assert_eq!(Desk::of(&[]).of_the_map(), None);
+}
+
+#[test]
+fn a_threshold_that_the_whole_map_follows_is_named_in_its_place() {
+    assert_eq!(Desk::of(&[("threshold-pressure", &[6e4], &[])]).of_the_map(), Some("threshold-pressure"));
+}
+
+#[test]
+fn a_limit_of_what_matters_keeps_smaller_maps_without_a_name() {
+    let mut desk = Desk::of(&[("threshold-pressure", &[6e4], &[])]);
+    desk.limits.matters_above_n = Some(500.0);
+    assert_eq!(desk.of_the_map(), None);
+}
+
+#[test]
+fn only_what_changes_pressure_or_length_acts_as_the_base_does() {
+    let desk = Desk::of(&[]);
+    let setting = desk.given.setting();
+    let of = |id: &str, shape: &[f64]| {
+        let guess = desk.given.guess(id, shape);
+        judged(&setting, setting.fit(vec![guess], &desk.given.start, &desk.given.model).expect("a fit")).expect("folds")
+    };
+    assert!(sees(&of("threshold-pressure", &[2e4])));
+    assert!(!sees(&of("end-taper", &[])));
+    // What reads a force and what has a memory strain nothing, whatever becomes of the base.
+    let base = judged(&setting, setting.fit(Vec::new(), &desk.given.start, &desk.given.model).expect("a fit"));
+    let base = base.expect("folds");
+    assert!(!is_strained(&setting, &of("viscous-damping", &[]), &base));
+    assert!(!is_strained(&setting, &base, &base));
+}

@@ -1,0 +1,92 @@
+use super::*;
+
+use pam_core::artifact::diagnosis::DiagnoseConfig;
+
+use crate::diagnose::{Request, diagnose};
+use crate::given::tests::{RAMPS, STROKES, artifact, recorded};
+
+/// The same strokes, begun a little later.
+fn later(time_s: f64) -> (f64, f64) {
+    STROKES(time_s + 4.0)
+}
+
+/// A diagnosis of the model's own muscle, in which nothing is missing, with what it says of the recordings; `change` makes of them
+/// what is to be weighed.
+fn weighed(change: impl FnOnce(&mut Diagnosis, &mut Agreement)) -> Diagnosis {
+    let model = artifact();
+    let own = |name, path| recorded(name, path, &model, 1.0).recording;
+    let mut found = diagnose(Request {
+        estimation: vec![own("strokes.csv", STROKES), own("ramps.csv", RAMPS)],
+        holdout: vec![own("later.csv", later)],
+        model,
+        config: DiagnoseConfig { matters_above_n: None, max_effects: 1, excluded: Vec::new() },
+        effects: Vec::new(),
+        rig: Vec::new(),
+        accept_implausible: true,
+    })
+    .expect("a diagnosis");
+    let mut agreement = Agreement::of(&found).expect("agreement");
+    change(&mut found, &mut agreement);
+    found.weigh(&agreement).expect("a weighed diagnosis");
+    found
+}
+
+/// `agreement` whose base leaves `times` the noise floor of what was held out.
+fn base_leaves(agreement: &mut Agreement, times: f64) {
+    agreement.base_holdout.together.as_mut().expect("a hold-out").rmse_all_n = times * agreement.noise_floor_n;
+}
+
+#[test]
+fn what_lacks_nothing_stays_consistent_and_says_so() {
+    let found = weighed(|_, _| ());
+    assert_eq!(found.verdict, Verdict::Consistent);
+    assert!(!found.statement.is_empty() && !found.has_map());
+}
+
+#[test]
+fn hold_outs_that_the_base_follows_make_what_is_unexplained_consistent() {
+    let unexplained = |times: f64| {
+        weighed(|found, agreement| {
+            found.verdict = Verdict::Unexplained;
+            base_leaves(agreement, times);
+        })
+    };
+    assert_eq!(unexplained(1.9).verdict, Verdict::Consistent);
+    assert_eq!(unexplained(2.1).verdict, Verdict::Unexplained);
+    let without = weighed(|found, agreement| {
+        found.verdict = Verdict::Unexplained;
+        agreement.base_holdout.together = None;
+    });
+    assert_eq!(without.verdict, Verdict::Unexplained, "nothing was held out");
+}
+
+#[test]
+fn what_leaves_half_as_much_again_as_the_sensors_is_explained_in_part() {
+    let explained = |times: f64| {
+        weighed(|found, agreement| {
+            found.verdict = Verdict::Explained;
+            let left = agreement.estimation.together.as_mut().expect("recordings");
+            left.rmse_all_n = times * found.sizes.sensors_n;
+        })
+    };
+    assert_eq!(explained(1.4).verdict, Verdict::Explained);
+    let part = explained(1.6);
+    assert_eq!(part.verdict, Verdict::ExplainedInPart);
+    assert!(part.statement.contains("Over all samples, reversals included"), "{}", part.statement);
+}
+
+#[test]
+fn a_model_that_is_missed_as_given_is_never_consistent_nor_explained() {
+    let missed = |verdict| {
+        weighed(|found, agreement| {
+            (found.verdict, found.given.misses) = (verdict, true);
+            base_leaves(agreement, 9.0);
+        })
+        .verdict
+    };
+    assert_eq!(missed(Verdict::Consistent), Verdict::Unexplained);
+    assert_eq!(missed(Verdict::Unexplained), Verdict::Unexplained);
+    for verdict in [Verdict::Explained, Verdict::Ambiguous, Verdict::ExplainedInPart] {
+        assert_eq!(missed(verdict), Verdict::ExplainedInPart);
+    }
+}
