@@ -338,17 +338,18 @@ impl Recordings {
         &mut self,
         model: &mut ModelArtifact,
         limits: &Limits,
-        track: Track,
+        mut track: Track,
         advance: &dyn Fn(),
     ) -> Result<SearchOutcome, DiagnoseError> {
-        let mut best = DiagnosisProblem::new(&self.estimation, model, limits.clone()).answer(track, advance)?;
+        let mut best = DiagnosisProblem::new(&self.estimation, model, limits.clone()).answer(&track, advance)?;
         for _ in 0..MOST_LAWS {
             let problem = DiagnosisProblem::new(&self.estimation, model, limits.clone());
-            let Some(standstill) = laws::better(&problem, &best.track, &best.found, model.direction)? else { break };
+            // On every instant: what one law mistakes says that another one holds.
+            let Some(standstill) = laws::better(&problem, &track, &best.found, model.direction)? else { break };
             let (before, before_n) = (model.direction, self.held_n(&best, model.direction)?);
             self.redirect(model, Thresholds { standstill, ..before })?;
-            let track = rig::track(&self.estimation, model, &self.rig)?;
-            let other = DiagnosisProblem::new(&self.estimation, model, limits.clone()).answer(track, advance)?;
+            let redirected = rig::track(&self.estimation, model, &self.rig)?;
+            let other = DiagnosisProblem::new(&self.estimation, model, limits.clone()).answer(&redirected, advance)?;
             let left = |outcome: &SearchOutcome| outcome.found.best.held_out.mean_square();
             // What judges names judges laws as well.
             if left(&other) >= left(&best) || self.held_n(&other, model.direction)? > before_n {
@@ -356,6 +357,7 @@ impl Recordings {
                 break;
             }
             best = other;
+            track = redirected;
         }
         Ok(best)
     }

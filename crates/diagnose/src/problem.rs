@@ -77,8 +77,8 @@ impl<'a> DiagnosisProblem<'a> {
     ///
     /// # Errors
     /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit; where they cannot be read back.
-    pub fn answer(&self, track: Track, looked: &dyn Fn()) -> Result<SearchOutcome, DiagnoseError> {
-        let track = self.without_mistaken(&track);
+    pub fn answer(&self, track: &Track, looked: &dyn Fn()) -> Result<SearchOutcome, DiagnoseError> {
+        let track = self.without_mistaken(track);
         let (found, sizes) = self.search(&track, &self.limits, looked)?;
         let Some(first) = self.knocks(&found, &sizes, Residual::WithSpeed)? else {
             return Ok(SearchOutcome { track, found, knocks: None, sizes });

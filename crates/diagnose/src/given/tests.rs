@@ -200,7 +200,7 @@ fn effects_that_explain_what_the_parameters_as_given_miss_take_it_back() {
     let mut given = Given::of(&question, &[]).expect("a comparison");
     given.misses = true;
     let track = crate::rig::track(&estimation, &model, &[]).expect("a track");
-    let mut outcome = question.answer(track.clone(), &|| {}).expect("a search");
+    let mut outcome = question.answer(&track, &|| {}).expect("a search");
     let found = &mut outcome.found;
     let names: Vec<&str> = found.best.state.guesses.iter().map(|guess| guess.id()).collect();
     assert_eq!(names, ["pressure-lag"]);

@@ -92,9 +92,9 @@ impl<'a> Member<'a> {
         diagnosis: &Diagnosis,
         known: &[Term],
     ) -> Result<Self, DiagnoseError> {
-        let track = rig::track(question.estimation, question.model, known)?;
+        let track = question.without_mistaken(&rig::track(question.estimation, question.model, known)?);
         let Diagnosis { holdout, .. } = diagnosis;
-        let held = || rig::track(holdout, question.model, known);
+        let held = || rig::track(holdout, question.model, known).map(|held| question.without_mistaken(&held));
         let heldout = (!holdout.is_empty()).then(held).transpose()?;
         let undetermined = || DiagnoseError::Undetermined { path: question.estimation[0].recording.path.clone() };
         Self::explained(question, track, heldout, diagnosis).ok_or_else(undetermined)

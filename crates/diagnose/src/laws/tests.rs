@@ -33,7 +33,7 @@ fn taken(law: Standstill, assumed: Standstill, change: impl Fn(&mut ModelArtifac
     // Nothing is looked for: the base alone.
     let question = DiagnosisProblem::new(&estimation, &model, Limits::of_test(0, 0.6));
     let track = crate::rig::track(&estimation, &model, &[]).expect("a track");
-    let outcome = question.answer(track.clone(), &|| {}).expect("a search");
+    let outcome = question.answer(&track, &|| {}).expect("a search");
     better(&question, &track, &outcome.found, model.direction).expect("directions")
 }
 
