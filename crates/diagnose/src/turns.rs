@@ -71,7 +71,8 @@ fn mistaken(track: &Track, beside: &[bool], residuals_n: &[f64]) -> Vec<usize> {
 }
 
 /// Which instants of `track` lie beside one whose direction is not settled, or beside the beginning of a stretch, or where the
-/// muscle slows down so far that its friction may turn over for a moment.
+/// muscle slows down so far that its friction may turn over for a moment; none at rest, where the pressure turns friction over and
+/// says so itself.
 fn beside(track: &Track) -> Vec<bool> {
     let mut beside = vec![false; track.n()];
     for range in &track.recordings {
@@ -79,7 +80,7 @@ fn beside(track: &Track) -> Vec<bool> {
         mark(track, range, range.clone().rev(), &mut beside);
         for at in range.clone() {
             let stays = |for_s: f64| stays(track, range, at, 0.5 * for_s);
-            beside[at] |= stays(BESIDE_S) && !stays(RESTS_S);
+            beside[at] = (beside[at] || stays(BESIDE_S)) && !stays(RESTS_S);
         }
     }
     beside
