@@ -146,7 +146,8 @@ mod tests {
     fn a_turn_that_is_dated_early_is_left_out_and_hardly_anything_else() {
         let mut given = given();
         let mut late = after_turns(&given.track);
-        late.retain(|&at| given.track.instants[at].moment.direction.abs() > 0.5);
+        let beside = beside(&given.track);
+        late.retain(|&at| beside[at] && given.track.instants[at].moment.direction.abs() > 0.5);
         for &at in &late {
             let direction = given.track.instants[at].moment.direction;
             given.track.instants[at].force_n += 2.0 * 12.0 * direction;
