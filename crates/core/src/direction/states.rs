@@ -126,10 +126,6 @@ impl Unturned {
         }
         let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
         slow.doubt(&resting, thresholds, &mut marks);
-        if !carried.is_known() {
-            let pushes = pushed.first().map_or(n, |still| still.start);
-            first_travel(time_s, &contraction, pushes, &mut marks);
-        }
         let mut states = from_marks(&marks, carried);
         if let Standstill::Slides { over_pa, share } = thresholds.standstill
             && !follows(over_pa, share)
@@ -156,20 +152,6 @@ impl Unturned {
         }
         states
     }
-}
-
-/// Travel from an unknown state in which friction may still turn over, in m: all that is no pre-sliding.
-const FIRST_M: f64 = 1.5e-4;
-/// Longest time that this may take, in s: what is slower than a crawl has rested before.
-const FIRST_S: f64 = 0.2;
-
-/// Unsettles the beginning of the first motion, up to that travel; not where the pressure moves friction before any motion does.
-fn first_travel(time_s: &[f64], contraction: &[f64], pushes: usize, marks: &mut [i8]) {
-    let Some(first) = marks.iter().position(|mark| *mark != 0).filter(|first| *first < pushes) else { return };
-    let turns = |row: &usize| {
-        time_s[*row] - time_s[first] < FIRST_S && (contraction[*row] - contraction[first]).abs() < FIRST_M
-    };
-    (first..marks.len()).take_while(turns).for_each(|row| marks[row] = 2 * marks[row].signum());
 }
 
 /// Lets what the pressure has made of friction before row `from` last until the length turns, or moves at all; `before` is the
