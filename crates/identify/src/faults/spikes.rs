@@ -84,7 +84,7 @@ pub struct Leap {
 }
 
 impl Leap {
-    /// From values [spread](spread_rows) over a channel and its noise; none where they are too few or never vary.
+    /// From values spread over a channel and its noise; none where they are too few or never vary.
     pub fn of(mut spread: Vec<f64>, noise: f64) -> Option<Self> {
         if spread.len() < 4 * AROUND {
             return None;

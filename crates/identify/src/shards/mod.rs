@@ -1,7 +1,7 @@
 //! Identification of recordings whose rows are in several places: shards answer, and what they answer is merged.
 //!
 //! In reading order: [`cut`] puts shards together into recordings, [`parts`] says which rows are whose, [`tile`] are rows that one
-//! place works on, [`mod@answer`] is what it finds there, [`summarize`] its file, [`merge`] puts answers together and asks the next question, [`conclude`]
+//! place works on, [`mod@answer`] is what it finds there, [`mod@summarize`] its file, [`merge`] puts answers together and asks the next question, [`conclude`]
 //! fits.
 //!
 //! # Design
