@@ -2,8 +2,8 @@
 //!
 //! What a turn that is dated late leaves is up to twice the friction, tens of times the noise, over a few instants. One in a hundred of
 //! these is most of the mean square of a healthy muscle, and hides whatever is smaller. They are told by what eq. 11 leaves of them
-//! beside a free static map, and left out of every fit; only beside turns, where nothing but the direction is in doubt, and where an
-//! effect that acts after a turn goes on beyond.
+//! beside a free static map, and left out of what effects are fitted to and judged by; only beside turns, where nothing but the
+//! direction is in doubt, and where an effect that acts after a turn goes on beyond. Laws of standstill are compared with them.
 
 use std::ops::Range;
 
@@ -22,7 +22,7 @@ const BESIDE_M: f64 = 2e-4;
 const LONGEST_S: f64 = 1.0;
 /// A muscle that takes longer for that travel, in s, rests: what is left there is something else.
 const RESTS_S: f64 = 0.5;
-/// Robust deviations of what is left elsewhere beyond which an instant is mistaken: one in sixteen thousand by chance.
+/// Robust deviations of what is left of its recording beyond which an instant is mistaken: one in sixteen thousand by chance.
 const SURELY: f64 = 4.0;
 /// Times that what is mistaken is looked for, beside a fit without it.
 const ROUNDS: usize = 5;
@@ -70,7 +70,7 @@ fn mistaken(track: &Track, beside: &[bool], residuals_n: &[f64]) -> Vec<usize> {
     found
 }
 
-/// Which instants of `track` lie beside one whose direction is not settled, or beside the beginning of a stretch, or where the
+/// Which instants of `track` lie beside one whose direction is not settled, or beside the beginning of a recording, or where the
 /// muscle slows down so far that its friction may turn over for a moment; none at rest, where the pressure turns friction over and
 /// says so itself.
 fn beside(track: &Track) -> Vec<bool> {

@@ -36,7 +36,7 @@ pub struct Limits {
     pub excluded: Vec<String>,
     /// Effects of a user's own that are considered beside those of the catalogue.
     pub own: Vec<&'static dyn Effect>,
-    /// Excess over the noise floor that matters, in N; none for half of the floor.
+    /// Excess over the noise floor that matters, in N; where none is given, a third of what noise leaves is worth a name.
     pub matters_above_n: Option<f64>,
     /// What sensor noise alone leaves at the full rate, in N.
     pub sensor_floor_n: f64,
