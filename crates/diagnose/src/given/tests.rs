@@ -1,8 +1,10 @@
 use super::*;
 
+use pam_core::artifact::diagnosis::DiagnoseConfig;
 use pam_core::recording::{Recording, Repairs, Samples};
 use pam_identification::prepare::{direct, gate};
 
+use crate::diagnose::{Diagnosis, Request, diagnose};
 use crate::search::Limits;
 
 /// A model as pam-identify wrote it.
@@ -60,6 +62,22 @@ pub(crate) fn recorded(name: &str, path: Path, model: &ModelArtifact, gain: f64)
     };
     let force_n: Vec<f64> = trace.model_n.iter().zip(rows).map(|(force, row)| gain * (force + noise_n(row))).collect();
     prepare(&force_n)
+}
+
+/// A diagnosis of strokes and ramps of the model's own muscle, which names one effect at most.
+pub(crate) fn diagnosed(holdout: Vec<Prepared>) -> Diagnosis {
+    let model = artifact();
+    let own = |name, path| recorded(name, path, &model, 1.0).recording;
+    diagnose(Request {
+        estimation: vec![own("strokes.csv", STROKES), own("ramps.csv", RAMPS)],
+        holdout: holdout.into_iter().map(|prepared| prepared.recording).collect(),
+        model,
+        config: DiagnoseConfig { matters_above_n: None, max_effects: 1, excluded: Vec::new() },
+        effects: Vec::new(),
+        rig: Vec::new(),
+        accept_implausible: true,
+    })
+    .expect("a diagnosis")
 }
 
 /// The model against recordings whose load cell reads `gain` times the force.

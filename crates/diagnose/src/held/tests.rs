@@ -1,11 +1,9 @@
 use super::*;
 
 use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::diagnosis::DiagnoseConfig;
 use pam_identification::prepare::Prepared;
 
-use crate::diagnose::{Request, diagnose};
-use crate::given::tests::{RAMPS, STROKES, artifact, recorded};
+use crate::given::tests::{STROKES, artifact, diagnosed, recorded};
 
 /// Four samples, of which the last does not count.
 fn trace_of(pressure_pa: [f64; 4], missed_n: [f64; 4]) -> Trace {
@@ -33,18 +31,7 @@ fn high(time_s: f64) -> (f64, f64) {
 
 /// What is said of recordings that were held out of a diagnosis of the model's own muscle.
 fn held(holdout: Vec<Prepared>) -> Held {
-    let model = artifact();
-    let own = |name, path| recorded(name, path, &model, 1.0).recording;
-    let found = diagnose(Request {
-        estimation: vec![own("strokes.csv", STROKES), own("ramps.csv", RAMPS)],
-        holdout: holdout.into_iter().map(|prepared| prepared.recording).collect(),
-        model,
-        config: DiagnoseConfig { matters_above_n: None, max_effects: 1, excluded: Vec::new() },
-        effects: Vec::new(),
-        rig: Vec::new(),
-        accept_implausible: true,
-    })
-    .expect("a diagnosis");
+    let found = diagnosed(holdout);
     let agreement = Agreement::of(&found).expect("agreement");
     judge(&found, &agreement).expect("a judgment")
 }

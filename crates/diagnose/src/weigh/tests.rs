@@ -1,9 +1,6 @@
 use super::*;
 
-use pam_core::artifact::diagnosis::DiagnoseConfig;
-
-use crate::diagnose::{Request, diagnose};
-use crate::given::tests::{RAMPS, STROKES, artifact, recorded};
+use crate::given::tests::{STROKES, artifact, diagnosed, recorded};
 
 /// The same strokes, begun a little later.
 fn later(time_s: f64) -> (f64, f64) {
@@ -13,18 +10,7 @@ fn later(time_s: f64) -> (f64, f64) {
 /// A diagnosis of the model's own muscle, in which nothing is missing, with what it says of the recordings; `change` makes of them
 /// what is to be weighed.
 fn weighed(change: impl FnOnce(&mut Diagnosis, &mut Agreement)) -> Diagnosis {
-    let model = artifact();
-    let own = |name, path| recorded(name, path, &model, 1.0).recording;
-    let mut found = diagnose(Request {
-        estimation: vec![own("strokes.csv", STROKES), own("ramps.csv", RAMPS)],
-        holdout: vec![own("later.csv", later)],
-        model,
-        config: DiagnoseConfig { matters_above_n: None, max_effects: 1, excluded: Vec::new() },
-        effects: Vec::new(),
-        rig: Vec::new(),
-        accept_implausible: true,
-    })
-    .expect("a diagnosis");
+    let mut found = diagnosed(vec![recorded("later.csv", later, &artifact(), 1.0)]);
     let mut agreement = Agreement::of(&found).expect("agreement");
     change(&mut found, &mut agreement);
     found.weigh(&agreement).expect("a weighed diagnosis");
