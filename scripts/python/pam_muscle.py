@@ -306,16 +306,42 @@ class Slack:
 
 
 class PressureLag:
+    LEAST_AIR_MASS = 1e-3
+
     def __init__(self, values, eq11):
-        self.time_constant_s, self.gauge_pa, self.muscle_pa = values["time_constant_s"], None, None
+        self.time_constant_s, self.air_mass = values["time_constant_s"], values.get("air_mass", 0.0)
+        self.last = None
 
     def sees(self, now):
-        gauge_pa = now.pressure_pa
-        if self.gauge_pa is not None and now.step_s > 0.0:
-            ratio = now.step_s / self.time_constant_s
-            slope_pa = (gauge_pa - self.gauge_pa) / ratio
-            now.pressure_pa = gauge_pa - slope_pa + (self.muscle_pa - self.gauge_pa + slope_pa) * math.exp(-ratio)
-        self.gauge_pa, self.muscle_pa = gauge_pa, now.pressure_pa
+        gauge_pa, muscle_pa_per_s = now.pressure_pa, 0.0
+        if self.last is not None and now.step_s > 0.0:
+            last_gauge_pa, last_muscle_pa, last_pa_per_s = self.last
+            rate_pa_per_s = (gauge_pa - last_gauge_pa) / now.step_s
+            behind_pa = self.time_constant_s * rate_pa_per_s
+            off_pa = last_muscle_pa - (last_gauge_pa - behind_pa)
+            if self.air_mass < self.LEAST_AIR_MASS:
+                off_pa *= math.exp(-now.step_s / self.time_constant_s)
+            else:
+                off_pa, off_pa_per_s = self.swung(off_pa, last_pa_per_s - rate_pa_per_s, now.step_s)
+                muscle_pa_per_s = rate_pa_per_s + off_pa_per_s
+            now.pressure_pa = gauge_pa - behind_pa + off_pa
+        self.last = gauge_pa, now.pressure_pa, muscle_pa_per_s
+
+    def swung(self, off_pa, off_pa_per_s, step_s):
+        """What is left of a distance from where an evenly moving gauge is followed to, and of its rate."""
+        inertia_s2 = self.air_mass * self.time_constant_s**2
+        a = 0.5 * self.time_constant_s / inertia_s2
+        square = a * a - 1.0 / inertia_s2
+        q = math.sqrt(max(abs(square), 1e-6 * a * a))
+        if square > 0.0:
+            slow, fast = -1.0 / (inertia_s2 * (a + q)), -(a + q)
+            part_pa = (off_pa_per_s - fast * off_pa) / (slow - fast)
+            slow_pa, fast_pa = part_pa * math.exp(slow * step_s), (off_pa - part_pa) * math.exp(fast * step_s)
+            return slow_pa + fast_pa, slow * slow_pa + fast * fast_pa
+        sine, cosine, decay = math.sin(q * step_s), math.cos(q * step_s), math.exp(-a * step_s)
+        across_pa = (off_pa_per_s + a * off_pa) / q
+        off = decay * (off_pa * cosine + across_pa * sine)
+        return off, decay * q * (across_pa * cosine - off_pa * sine) - a * off
 
 
 class ThresholdPressure:

@@ -111,9 +111,9 @@ mod tests {
     #[test]
     fn what_is_left_of_a_value_that_is_not_exactly_right_gets_no_name() {
         let mut given =
-            Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[("pressure-lag", &[0.15], &[])]);
+            Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[("pressure-lag", &[0.15, 0.0], &[])]);
         given.disturb();
-        let lag = Term::new(effect("pressure-lag").expect("an id"), vec![0.11], Vec::new());
+        let lag = Term::new(effect("pressure-lag").expect("an id"), vec![0.11, 0.0], Vec::new());
         let track = without(given.track.clone(), &[lag], &given.model);
         let of_the_rig = CATALOGUE.iter().filter(|effect| is_of_the_rig(**effect));
         let excluded = of_the_rig.map(|effect| effect.page().id.to_owned()).collect();
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn nothing_known_leaves_the_track_as_it_is_and_a_lag_changes_its_pressures() {
         let given = Given::of(&["multisine"], &[]);
-        let lag = Term::new(effect("pressure-lag").expect("an id"), vec![0.1], Vec::new());
+        let lag = Term::new(effect("pressure-lag").expect("an id"), vec![0.1, 0.0], Vec::new());
         assert_eq!(apart(&without(given.track.clone(), &[], &given.model), &given.track), (0.0, 0.0));
         assert!(apart(&without(given.track.clone(), &[lag], &given.model), &given.track).0 > 100.0);
     }

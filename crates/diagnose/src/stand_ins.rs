@@ -75,7 +75,8 @@ pub(crate) fn leaves_too_much(found: &Found, sizes: &Sizes) -> bool {
         [only] => {
             let effect = only.effect;
             let is_judged = !effect.is_static() && !effect.is_permanent() && effect.kind() != Kind::Event;
-            is_judged && sizes.share_unexplained() > LEFT_ALONE
+            // Less than the sensors leave is no evidence against a name.
+            is_judged && sizes.share_unexplained() > LEFT_ALONE && sizes.left_n > sizes.sensors_n
         }
         _ => false,
     }
@@ -161,14 +162,14 @@ mod tests {
     #[test]
     fn what_explains_most_stays_and_what_leaves_most_does_not() {
         let protocols = ["isobaric-triangles", "multisine"];
-        let lagging = Given::of(&protocols, &[("pressure-lag", &[0.15], &[])]);
-        let lag = lagging.guess("pressure-lag", &[0.15]);
+        let lagging = Given::of(&protocols, &[("pressure-lag", &[0.15, 0.0], &[])]);
+        let lag = lagging.guess("pressure-lag", &[0.15, 0.0]);
         assert_eq!(names(&lagging, lag, Coordinate::Contraction), ["pressure-lag"]);
         let mut touched = Given::of(&protocols, &[]);
         for instant in &mut touched.track.instants {
             instant.force_n += 6.0 * (-((instant.moment.contraction_ratio - 0.05) / 0.012).powi(2)).exp();
         }
-        let lag = touched.guess("pressure-lag", &[0.15]);
+        let lag = touched.guess("pressure-lag", &[0.15, 0.0]);
         assert_eq!(names(&touched, lag, Coordinate::Contraction), Vec::<&str>::new());
     }
 }

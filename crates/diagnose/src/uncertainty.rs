@@ -176,10 +176,10 @@ mod tests {
 
     #[test]
     fn a_shape_that_the_recordings_bend_has_an_error_and_neighbors_that_share_noise_count_once() {
-        let mut given = Given::of(&["isobaric-triangles", "multisine"], &[("pressure-lag", &[0.15], &[])]);
+        let mut given = Given::of(&["isobaric-triangles", "multisine"], &[("pressure-lag", &[0.15, 0.0], &[])]);
         given.disturb();
         let setting = given.setting();
-        let lag = given.guess("pressure-lag", &[0.15]);
+        let lag = given.guess("pressure-lag", &[0.15, 0.0]);
         let state = setting.fit(vec![lag], &given.start, &given.model).expect("a fit");
         let residuals_n = setting.residuals_n(&state);
         let correlated = correlated_instants(&setting, &residuals_n);

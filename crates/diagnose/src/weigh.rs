@@ -64,9 +64,11 @@ impl Diagnosis {
     }
 
     /// Whether recordings that nothing was fitted to are followed so well, over all samples, that what is left of the fitted ones
-    /// without a name, and without a term that models it, does not matter.
+    /// without a name, and without a term that models it, does not matter. A smooth static map belongs to any muscle's model, as far
+    /// as the form of eq. 11 accounts for it.
     fn is_followed(&self, agreement: &Agreement) -> bool {
-        let held = agreement.base_holdout.together.as_ref();
+        let as_written = self.sizes.static_n.is_none().then_some(&agreement.holdout);
+        let held = as_written.unwrap_or(&agreement.base_holdout).together.as_ref();
         self.verdict == Verdict::Unexplained
             && self.effects.is_empty()
             && self.empirical.is_none()

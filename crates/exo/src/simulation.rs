@@ -208,7 +208,7 @@ mod tests {
             assert!(lift(&plain, &plant, true).0 > 3.0 * without_rad);
         }
         // A long tube is more than gains for a short one bear.
-        assert!(!lift(&plain, &with_effect("pressure-lag", &[0.04], &[]), true).1);
+        assert!(!lift(&plain, &with_effect("pressure-lag", &[0.04, 0.0], &[]), true).1);
     }
 
     #[test]

@@ -56,14 +56,18 @@ impl EffectEntry {
             return Err(format!("effect {} has no parameter {}; it has {}", self.id, entry.name, names.join(", ")));
         }
         let mut values = Vec::with_capacity(expected.len());
-        for (name, unit, (lowest, highest)) in expected {
+        for (index, (name, unit, (lowest, highest))) in expected.into_iter().enumerate() {
             let mut entries = self.parameters.iter().filter(|entry| entry.name == name);
-            let entry = entries.next().ok_or_else(|| {
-                format!(
-                    "effect {} lacks its parameter {name}; a model of an earlier catalogue has to be diagnosed again",
-                    self.id
-                )
-            })?;
+            let Some(entry) = entries.next() else {
+                let lacks = || {
+                    format!(
+                        "effect {} lacks its parameter {name}; a model of an earlier catalogue has to be diagnosed again",
+                        self.id
+                    )
+                };
+                values.push(effect.unless_stated(index).ok_or_else(lacks)?);
+                continue;
+            };
             if entries.next().is_some() {
                 return Err(format!("parameter {name} of effect {} stands there twice", self.id));
             }

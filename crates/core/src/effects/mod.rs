@@ -192,6 +192,11 @@ pub trait Effect: Sync {
         false
     }
 
+    /// Value of shape `index` where an artifact does not state it: the effect had that value before it had the shape.
+    fn unless_stated(&self, _index: usize) -> Option<f64> {
+        None
+    }
+
     /// Whether its memory outlasts a recording, so that what went before decides where it begins.
     fn outlasts(&self) -> bool {
         false

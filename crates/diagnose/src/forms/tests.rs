@@ -37,8 +37,8 @@ fn what_is_not_counted_has_a_rank_and_gives_none() {
 
 #[test]
 fn a_lag_bends_to_twice_and_half_its_time_constant() {
-    let given = Given::of(&["multisine"], &[("pressure-lag", &[0.1], &[])]);
-    let forms = forms_of(&given, "pressure-lag", &[0.1]);
+    let given = Given::of(&["multisine"], &[("pressure-lag", &[0.1, 0.0], &[])]);
+    let forms = forms_of(&given, "pressure-lag", &[0.1, 0.0]);
     let [columns] = &forms.columns_n[..] else { panic!("one effect, and {} sets", forms.columns_n.len()) };
     // To first order a lag is in proportion to its time constant: twice of it adds about as much again, half of it takes half.
     let (half, twice) = (&columns[0], &columns[1]);
@@ -51,8 +51,8 @@ fn a_lag_bends_to_twice_and_half_its_time_constant() {
 
 #[test]
 fn a_shape_bends_no_further_than_its_range() {
-    let given = Given::of(&["multisine"], &[("pressure-lag", &[1.0], &[])]);
-    let forms = forms_of(&given, "pressure-lag", &[1.0]);
+    let given = Given::of(&["multisine"], &[("pressure-lag", &[1.0, 0.0], &[])]);
+    let forms = forms_of(&given, "pressure-lag", &[1.0, 0.0]);
     let (half, twice) = (&forms.columns_n[0][0], &forms.columns_n[0][1]);
     assert!(largest_n(half) > 1.0);
     assert_eq!(largest_n(twice), 0.0);
@@ -69,8 +69,8 @@ fn an_event_does_not_bend() {
 
 #[test]
 fn forms_stand_beside_the_nuisances_that_were_there() {
-    let given = Given::of(&["multisine"], &[("pressure-lag", &[0.1], &[])]);
-    let forms = forms_of(&given, "pressure-lag", &[0.1]);
+    let given = Given::of(&["multisine"], &[("pressure-lag", &[0.1, 0.0], &[])]);
+    let forms = forms_of(&given, "pressure-lag", &[0.1, 0.0]);
     let nuisance = Nuisance::of_recordings(&given.track, 0.3);
     assert!(forms.beside(&nuisance, &given.track.counted).n() > nuisance.n());
 }
@@ -92,7 +92,7 @@ fn a_known_effect_may_have_another_size_and_its_zeros_another_value() {
 fn what_lives_in_time_is_not_bent_over_time() {
     let given = Given::of(&["multisine"], &[]);
     let drift = of_known_n(&given.track, &given.model, &[term("force-drift", &[120.0], &[0.01, 1.0])]);
-    let lag = of_known_n(&given.track, &given.model, &[term("pressure-lag", &[0.1], &[])]);
+    let lag = of_known_n(&given.track, &given.model, &[term("pressure-lag", &[0.1, 0.0], &[])]);
     // The same number of shapes: a lag has polynomials over the coordinate that it lives in, of itself and of friction.
     assert_eq!(lag.len() - drift.len(), 2 * LIVES);
 }

@@ -289,7 +289,7 @@ mod tests {
 
     #[test]
     fn a_lag_is_named_and_nothing_beside_it() {
-        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
         given.disturb();
         assert_eq!(names(&given), ["pressure-lag"]);
     }

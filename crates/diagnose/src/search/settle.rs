@@ -176,9 +176,9 @@ mod tests {
 
     #[test]
     fn a_lag_that_was_taken_at_a_point_of_its_grid_ends_at_its_own_time() {
-        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
         given.disturb();
-        let mut best = of(&given, "pressure-lag", &[0.1]);
+        let mut best = of(&given, "pressure-lag", &[0.1, 0.0]);
         for _ in 0..3 {
             let before = best.held_out.mean_square();
             best = polished(&given.setting(), best).expect("a fit");

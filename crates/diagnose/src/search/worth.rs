@@ -29,7 +29,7 @@ const MATTERS: f64 = 0.1;
 /// what the base leaves beside a static map.
 pub(super) fn worth(tried: &Tried, further: bool, whole: &HeldOut, floor_square: f64, limits: &Limits) -> bool {
     let Tried { trial, before } = tried;
-    let gained = before.mean_square() - trial.held_out.mean_square();
+    let gained = before.gain(&trial.held_out);
     let mismatch = before.mean_square() - floor_square;
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
     let whole = whole.mean_square() - floor_square;

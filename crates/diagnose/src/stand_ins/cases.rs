@@ -15,7 +15,7 @@ struct Desk {
 
 impl Desk {
     fn new() -> Self {
-        Self { given: Given::of(&["multisine"], &[("pressure-lag", &[0.15], &[])]) }
+        Self { given: Given::of(&["multisine"], &[("pressure-lag", &[0.15, 0.0], &[])]) }
     }
 
     /// Asks of a search that took `guesses`.
@@ -52,7 +52,7 @@ fn one_name_that_leaves_more_than_a_third_is_not_believed() {
     let judges = |guesses: Vec<CandidateEffect>, share: f64| {
         Desk::new().ask(guesses, |_, found, limits| leaves_too_much(&found, &leaving(Sizes::of(&found, limits), share)))
     };
-    let lag = || guess("pressure-lag", &[0.15]);
+    let lag = || guess("pressure-lag", &[0.15, 0.0]);
     assert!(judges(vec![lag()], 0.35) && !judges(vec![lag()], 0.3));
     assert!(!judges(Vec::new(), 0.9), "nothing is named");
     assert!(!judges(vec![lag(), guess("viscous-damping", &[])], 0.9), "two share it");
@@ -66,11 +66,12 @@ fn one_name_that_leaves_more_than_a_third_is_not_believed() {
 
 #[test]
 fn a_shape_where_nothing_published_is_has_no_name() {
-    let (any, found) = Desk::new()
-        .ask(vec![guess("pressure-lag", &[1.0])], |setting, mut found, _| (let_go_of_ends(setting, &mut found), found));
+    let (any, found) = Desk::new().ask(vec![guess("pressure-lag", &[1.0, 0.0])], |setting, mut found, _| {
+        (let_go_of_ends(setting, &mut found), found)
+    });
     assert!(any && ids(&found).is_empty());
     assert_eq!(found.stand_ins, ["pressure-lag"]);
-    let (any, found) = Desk::new().ask(vec![guess("pressure-lag", &[0.15])], |setting, mut found, _| {
+    let (any, found) = Desk::new().ask(vec![guess("pressure-lag", &[0.15, 0.0])], |setting, mut found, _| {
         (let_go_of_ends(setting, &mut found), found)
     });
     assert!(!any && found.stand_ins.is_empty());
@@ -95,7 +96,7 @@ fn kept(guesses: Vec<CandidateEffect>, share: f64, left: f64, confirmed: bool) -
 
 #[test]
 fn what_leaves_too_much_is_let_go_of_unless_other_recordings_show_it() {
-    let lag = || vec![guess("pressure-lag", &[0.15])];
+    let lag = || vec![guess("pressure-lag", &[0.15, 0.0])];
     assert!(kept(lag(), 0.5, 0.0, false).is_empty());
     assert_eq!(kept(lag(), 0.5, 0.0, true), ["pressure-lag"]);
     assert_eq!(kept(lag(), 0.2, 0.0, false), ["pressure-lag"]);
@@ -103,7 +104,7 @@ fn what_leaves_too_much_is_let_go_of_unless_other_recordings_show_it() {
 
 #[test]
 fn where_most_is_left_every_name_goes_that_is_not_confirmed() {
-    let two = || vec![guess("pressure-lag", &[0.15]), guess("viscous-damping", &[])];
+    let two = || vec![guess("pressure-lag", &[0.15, 0.0]), guess("viscous-damping", &[])];
     assert!(kept(two(), 0.0, 0.7, false).is_empty());
     assert_eq!(kept(two(), 0.0, 0.7, true), ["pressure-lag"]);
     assert_eq!(kept(two(), 0.0, 0.6, false), ["pressure-lag", "viscous-damping"]);
@@ -111,7 +112,7 @@ fn where_most_is_left_every_name_goes_that_is_not_confirmed() {
 
 #[test]
 fn a_right_name_stands_for_itself() {
-    let left = Desk::new().ask(vec![guess("pressure-lag", &[0.15])], |setting, found, _| {
+    let left = Desk::new().ask(vec![guess("pressure-lag", &[0.15, 0.0])], |setting, found, _| {
         let whole = found.whole.held_out.mean_square();
         let best = without(setting, found.best.clone(), &found.features, whole, false);
         best.state.guesses.len()
@@ -125,7 +126,7 @@ fn left_of_a_touch(confirmed: bool) -> usize {
     for instant in &mut given.track.instants {
         instant.force_n += 6.0 * (-((instant.moment.contraction_ratio - 0.05) / 0.012).powi(2)).exp();
     }
-    Desk { given }.ask(vec![guess("pressure-lag", &[0.15])], |setting, found, _| {
+    Desk { given }.ask(vec![guess("pressure-lag", &[0.15, 0.0])], |setting, found, _| {
         let whole = found.base.held_out.mean_square();
         without(setting, found.best.clone(), &found.features, whole, confirmed).state.guesses.len()
     })

@@ -20,8 +20,8 @@ fn base(given: &Given) -> State {
 #[test]
 fn evidence_is_charged_for_freedom_ends_pressing_and_events() {
     let kept = |id: &str, shape: &[f64], is_pressed, beginnings| share_kept(&guess(id, shape), is_pressed, beginnings);
-    assert_eq!(kept("pressure-lag", &[0.1], false, 0), 1.0);
-    assert!((kept("pressure-lag", &[0.1], false, 3) - 0.94).abs() < 1e-12, "each beginning is a parameter");
+    assert_eq!(kept("pressure-lag", &[0.1, 0.0], false, 0), 1.0);
+    assert!((kept("pressure-lag", &[0.1, 0.0], false, 3) - 0.94).abs() < 1e-12, "each beginning is a parameter");
     assert!((kept("rubber-hysteresis", &[2e-3], true, 0) - 0.7 * 0.98).abs() < 1e-12);
     assert!((kept("rubber-hysteresis", &[1e-4], false, 0) - 0.2 * 0.98).abs() < 1e-12);
     assert!((kept("force-step", &[0.0, 5.0], false, 0) - 0.5 * 0.96).abs() < 1e-12);
@@ -56,9 +56,9 @@ fn an_amplitude_presses_at_the_largest_that_physics_has_and_not_at_nothing() {
 
 #[test]
 fn what_acts_through_the_base_has_no_amplitude_that_could_press() {
-    let given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+    let given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
     let (held_out, is_pressed) =
-        weigh(&given.setting(), &base(&given), &guess("pressure-lag", &[0.15])).expect("a fit");
+        weigh(&given.setting(), &base(&given), &guess("pressure-lag", &[0.15, 0.0])).expect("a fit");
     assert!(!is_pressed);
     let before = judged(&given.setting(), base(&given)).expect("folds").held_out;
     assert!(held_out.mean_square() < 0.01 * before.mean_square());
@@ -66,16 +66,16 @@ fn what_acts_through_the_base_has_no_amplitude_that_could_press() {
 
 #[test]
 fn refining_goes_to_where_less_is_left() {
-    let given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.2], &[])]);
+    let given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.2, 0.0], &[])]);
     let (setting, state) = (given.setting(), base(&given));
-    let cost = |shape: f64| mean_square(&setting, &state, &guess("pressure-lag", &[shape])).expect("a fit");
+    let cost = |shape: f64| mean_square(&setting, &state, &guess("pressure-lag", &[shape, 0.0])).expect("a fit");
     for first in [0.16, 0.32] {
-        let (left, refined) = refine(&setting, &state, &guess("pressure-lag", &[first]), cost(first), 4);
+        let (left, refined) = refine(&setting, &state, &guess("pressure-lag", &[first, 0.0]), cost(first), 4);
         assert!(left < 0.05 * cost(first), "{first}: {left}");
         assert!((refined.shape[0] - 0.2).abs() < 0.02, "{first}: {:?}", refined.shape);
     }
     // Nothing better, nothing changed; an event is where it was found.
-    let (left, same) = refine(&setting, &state, &guess("pressure-lag", &[0.16]), -1.0, 1);
+    let (left, same) = refine(&setting, &state, &guess("pressure-lag", &[0.16, 0.0]), -1.0, 1);
     assert_eq!((left, same.shape), (-1.0, vec![0.16]));
     let (left, same) = refine(&setting, &state, &guess("force-step", &[0.0, 5.0]), 9.0, 1);
     assert_eq!((left, same.shape), (9.0, vec![0.0, 5.0]));
@@ -91,7 +91,7 @@ fn trials(given: &Given, state: &State, known: &Shapes, takes: &[&str]) -> Vec<T
 
 #[test]
 fn every_effect_that_may_be_taken_is_tried_once_and_the_best_is_first() {
-    let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+    let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
     given.disturb();
     let ids = ["channel-delay", "pressure-lag", "rubber-hysteresis", "force-drift", "mullins-softening"];
     let found = trials(&given, &base(&given), &Shapes::new(), &ids);
@@ -108,9 +108,9 @@ fn every_effect_that_may_be_taken_is_tried_once_and_the_best_is_first() {
 
 #[test]
 fn what_is_in_already_is_not_tried_again() {
-    let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+    let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
     given.disturb();
-    let state = with(&given.setting(), &base(&given), &guess("pressure-lag", &[0.15])).expect("a fit");
+    let state = with(&given.setting(), &base(&given), &guess("pressure-lag", &[0.15, 0.0])).expect("a fit");
     assert_eq!(state.guesses.len(), 1);
     assert!(trials(&given, &state, &Shapes::new(), &["pressure-lag"]).is_empty());
 }
@@ -126,10 +126,10 @@ fn what_gains_nothing_has_no_evidence_and_leaves_what_was_left() {
 
 #[test]
 fn a_shape_that_was_best_before_is_where_a_trial_begins() {
-    let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+    let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
     given.disturb();
     // From a shape far away, refining does not reach the best.
-    let known = Shapes::from([("pressure-lag", vec![0.9])]);
+    let known = Shapes::from([("pressure-lag", vec![0.9, 0.0])]);
     let found = trials(&given, &base(&given), &known, &["pressure-lag"]);
     assert!(found[0].guess.shape[0] > 0.3, "{:?}", found[0].guess.shape);
 }

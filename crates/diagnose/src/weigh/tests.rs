@@ -17,9 +17,15 @@ fn weighed(change: impl FnOnce(&mut Diagnosis, &mut Agreement)) -> Diagnosis {
     found
 }
 
-/// `agreement` whose base leaves `times` the noise floor of what was held out.
+/// `agreement` in which the base, and the model as it is written, leave `times` the noise floor of what was held out.
 fn base_leaves(agreement: &mut Agreement, times: f64) {
     agreement.base_holdout.together.as_mut().expect("a hold-out").rmse_all_n = times * agreement.noise_floor_n;
+    written_leaves(agreement, times);
+}
+
+/// The same of the model as it is written alone.
+fn written_leaves(agreement: &mut Agreement, times: f64) {
+    agreement.holdout.together.as_mut().expect("a hold-out").rmse_all_n = times * agreement.noise_floor_n;
 }
 
 #[test]
@@ -41,9 +47,23 @@ fn hold_outs_that_the_base_follows_make_what_is_unexplained_consistent() {
     assert_eq!(unexplained(2.1).verdict, Verdict::Unexplained);
     let without = weighed(|found, agreement| {
         found.verdict = Verdict::Unexplained;
-        agreement.base_holdout.together = None;
+        (agreement.base_holdout.together, agreement.holdout.together) = (None, None);
     });
     assert_eq!(without.verdict, Verdict::Unexplained, "nothing was held out");
+}
+
+#[test]
+fn a_smooth_map_follows_hold_outs_for_a_muscle_until_it_takes_more_than_any_muscle_has() {
+    let unexplained = |static_n| {
+        weighed(|found, agreement| {
+            (found.verdict, found.sizes.static_n) = (Verdict::Unexplained, static_n);
+            base_leaves(agreement, 4.0);
+            written_leaves(agreement, 1.9);
+        })
+        .verdict
+    };
+    assert_eq!(unexplained(None), Verdict::Consistent);
+    assert_eq!(unexplained(Some(20.0)), Verdict::Unexplained);
 }
 
 #[test]

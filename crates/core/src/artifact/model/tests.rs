@@ -146,6 +146,14 @@ fn what_no_program_could_read_is_not_written() {
 }
 
 #[test]
+fn a_lag_of_before_air_had_a_mass_is_read_as_it_was_meant() {
+    let lag = |entries| artifact(vec![effect("pressure-lag", entries)]).augmented_model().terms()[0].shape.clone();
+    let time = || parameter("time_constant_s", 0.06, "s");
+    assert_eq!(lag(vec![time()]), [0.06, 0.0]);
+    assert_eq!(lag(vec![time(), parameter("air_mass", 0.5, "1")]), [0.06, 0.5]);
+}
+
+#[test]
 fn what_the_catalogue_does_not_have_is_refused_by_name() {
     let refusal = |effects| artifact(effects).check().expect_err("a refusal");
     let one = |entries| refusal(vec![effect("rubber-hysteresis", entries)]);

@@ -137,7 +137,7 @@ fn a_muscle_leaves_instruments_and_fixture_behind() {
         vec![
             term("force-drift", &[30.0], &[0.1, 0.0]),
             term("slack", &[0.0, 0.0], &[]),
-            term("pressure-lag", &[0.05], &[]),
+            term("pressure-lag", &[0.05, 0.0], &[]),
             term("force-step", &[0.0, 1.0], &[3.0]),
         ],
     );

@@ -21,7 +21,7 @@ fn between(
 #[test]
 fn a_lag_and_a_delay_of_the_pressure_ask_for_a_pressure_chirp() {
     let (experiment, setpoints, _) =
-        between(&["isometric-ramps"], ("pressure-lag", &[0.02], &[]), ("channel-delay", &[-0.02, 0.0]));
+        between(&["isometric-ramps"], ("pressure-lag", &[0.02, 0.0], &[]), ("channel-delay", &[-0.02, 0.0]));
     assert_eq!(experiment.protocol, "pressure-chirp");
     assert_eq!(experiment.separates, ["pressure-lag", "channel-delay"]);
     assert!(setpoints.duration_s() > 300.0);
@@ -51,7 +51,7 @@ fn any_number_of_threads_gives_the_same_answer() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| {
             let (experiment, setpoints, all) =
-                between(&["isometric-ramps"], ("pressure-lag", &[0.02], &[]), ("channel-delay", &[-0.02, 0.0]));
+                between(&["isometric-ramps"], ("pressure-lag", &[0.02, 0.0], &[]), ("channel-delay", &[-0.02, 0.0]));
             let bits: Vec<u64> = all.iter().flat_map(|separation| &separation.pairs_n).map(|n| n.to_bits()).collect();
             (experiment, setpoints, bits)
         })

@@ -85,7 +85,7 @@ fn only_trials_that_come_near_the_best_promise_anything() {
 
 #[test]
 fn a_look_finds_the_lag_that_is_there_before_everything_else() {
-    let ids = Desk::of(&[("pressure-lag", &[0.15], &[])]).tried();
+    let ids = Desk::of(&[("pressure-lag", &[0.15, 0.0], &[])]).tried();
     assert_eq!(ids[0], "pressure-lag");
     // Beside a map that bends, a smooth static effect is one more bend.
     assert!(!ids.contains(&"end-taper"), "{ids:?}");
@@ -94,7 +94,7 @@ fn a_look_finds_the_lag_that_is_there_before_everything_else() {
 
 #[test]
 fn what_is_excluded_is_neither_tried_nor_said_not_to_have_been() {
-    let mut desk = Desk::of(&[("pressure-lag", &[0.15], &[])]);
+    let mut desk = Desk::of(&[("pressure-lag", &[0.15, 0.0], &[])]);
     desk.limits.excluded.push("pressure-lag".to_owned());
     assert!(!desk.tried().contains(&"pressure-lag"));
     let missing = desk.look(|look, base| look.not_tried(base, &[trial("slack", 1.0)]));
