@@ -5,13 +5,14 @@
 //! or the muscle.
 
 use pam_identification::evaluate::noise_floor_n;
-use pam_identification::faults::reading::{self, MISSES};
+use pam_identification::faults::reading::{self, MISSES, Reading, Wrong};
 use pam_identification::trace::{Trace, trace, trace_augmented};
 
 use crate::artifact::{Agreement, together};
 use crate::coverage::Coverage;
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;
+use crate::nuisance::TARE_N;
 
 /// Times what is left of the fitted recordings that may be left of a held-out one, whatever the reason. A recording or two do
 /// not say what eq. 11 is elsewhere (2.6 times was seen of a healthy muscle), and memory goes on from recording to recording.
@@ -19,6 +20,9 @@ const MOST: f64 = 4.0;
 
 /// Times the worst error with which one of the fitted recordings is foretold by the others: so much is foretold of any recording.
 const AS_OTHERS: f64 = 2.0;
+
+/// Standard deviations of the tare of a load cell that a recording may be off by: one in twenty is beyond.
+const TARES: f64 = 2.0;
 
 /// Share of a held-out recording within what was fitted from which on it is judged, there alone.
 const LEAST_WITHIN: f64 = 0.1;
@@ -30,8 +34,8 @@ const TOLD_OUTSIDE: f64 = 0.5;
 pub(crate) struct Held {
     /// Each recording that the diagnosed model misses where the fitted ones have been, with the reason, in words.
     pub(crate) missed: Vec<String>,
-    /// Each recording that is mostly elsewhere, in words.
-    pub(crate) elsewhere: Vec<String>,
+    /// Each recording that is mostly elsewhere, or tared otherwise, in words.
+    pub(crate) noticed: Vec<String>,
     /// What the model misses of such a recording there, which judges the extrapolation alone, in words.
     pub(crate) unjudged: Vec<String>,
 }
@@ -57,7 +61,7 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
         let within = within(&trace, &coverage);
         let share_within = within.time_s.len() as f64 / trace.time_s.len().max(1) as f64;
         if share_within < 1.0 - TOLD_OUTSIDE {
-            held.elsewhere.push(format!(
+            held.noticed.push(format!(
                 "{path} is at pressures and lengths that no fitted recording was near for {:.0} % of its samples: what the model \
                  says there is extrapolated",
                 100.0 * (1.0 - share_within)
@@ -67,7 +71,13 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
             continue;
         }
         // A wrong unit or zero takes a recording elsewhere, too.
-        let instrument = reading::said(&reading::explain(&[trace], model.base(), own_n));
+        let readings = reading::explain(&[trace], model.base(), own_n);
+        if let Some(tare) = readings.iter().find(|reading| is_tare(reading)) {
+            let words = tare.words();
+            held.noticed.push(format!("{path}: {words}, no more than a load cell that is tared before each recording"));
+            continue;
+        }
+        let instrument = reading::said(&readings);
         let all_n = left_n;
         let left_n = if instrument.is_some() { left_n } else { left_n.min(rmse_n(&within)) };
         let reason = match instrument {
@@ -90,6 +100,11 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
         ));
     }
     Ok(held)
+}
+
+/// Whether `reading` is the tare of a load cell: as fitted recordings have one of their own each, so may one that was held out.
+fn is_tare(reading: &Reading) -> bool {
+    matches!(reading.wrong, Wrong::Zero(zero_n) if reading.channel == "force" && zero_n.abs() <= TARES * TARE_N)
 }
 
 /// The samples of `trace` that `coverage` holds.

@@ -83,7 +83,7 @@ pub(crate) const LOOSE: f64 = 20.0;
 const CORRELATED: f64 = 25.0;
 
 /// Tares of a load cell that is zeroed before a recording, in N.
-const TARE_N: f64 = 0.5;
+pub(crate) const TARE_N: f64 = 0.5;
 
 impl Nuisance {
     /// Columns at each instant; none for no nuisances at all.

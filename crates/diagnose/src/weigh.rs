@@ -46,9 +46,9 @@ impl Diagnosis {
                 numbers.floor_n
             ));
         }
-        let held::Held { missed, elsewhere, unjudged } = held::judge(self, agreement)?;
+        let held::Held { missed, noticed, unjudged } = held::judge(self, agreement)?;
         self.given.holdout_missed = missed;
-        self.noticed.extend(elsewhere);
+        self.noticed.extend(noticed);
         if self.given.misses || !self.given.holdout_missed.is_empty() {
             self.verdict = match self.verdict {
                 Verdict::Consistent | Verdict::Unexplained => Verdict::Unexplained,

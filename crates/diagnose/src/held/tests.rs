@@ -71,7 +71,7 @@ fn what_is_left_is_a_root_mean_square_over_what_counts() {
 #[test]
 fn a_hold_out_of_the_same_muscle_is_not_missed() {
     let held = held(vec![recorded("again.csv", later, &artifact(), 1.0)]);
-    assert!(held.missed.is_empty() && held.elsewhere.is_empty() && held.unjudged.is_empty(), "{held:?}");
+    assert!(held.missed.is_empty() && held.noticed.is_empty() && held.unjudged.is_empty(), "{held:?}");
 }
 
 #[test]
@@ -80,6 +80,14 @@ fn a_load_cell_that_reads_too_much_is_the_reason_where_it_explains_a_hold_out() 
     let [missed] = &held.missed[..] else { panic!("{held:?}") };
     assert!(missed.starts_with("gain.csv is missed by") && missed.contains("force"), "{missed}");
     assert!(!missed.contains("another muscle"), "{missed}");
+}
+
+#[test]
+fn a_zero_of_the_force_within_two_standard_deviations_of_a_tare_is_one_and_nothing_else_is() {
+    let reading = |channel, wrong| Reading { channel, wrong, left_n: 0.3 };
+    let zero = |newtons| is_tare(&reading("force", Wrong::Zero(newtons)));
+    assert!(zero(0.9) && zero(-0.9) && !zero(1.1) && !zero(-1.1));
+    assert!(!is_tare(&reading("pressure", Wrong::Zero(0.5))) && !is_tare(&reading("force", Wrong::Gain(0.99))));
 }
 
 #[test]
@@ -92,6 +100,6 @@ fn a_hold_out_of_another_muscle_is_said_to_be_one() {
 #[test]
 fn a_hold_out_far_from_every_fitted_recording_says_nothing_of_the_muscle() {
     let held = held(vec![recorded("high.csv", high, &another(), 1.0)]);
-    assert!(held.elsewhere.iter().any(|said| said.starts_with("high.csv is at pressures and lengths")), "{held:?}");
+    assert!(held.noticed.iter().any(|said| said.starts_with("high.csv is at pressures and lengths")), "{held:?}");
     assert!(held.missed.iter().all(|said| !said.contains("another muscle")), "{held:?}");
 }

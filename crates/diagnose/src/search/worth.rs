@@ -6,6 +6,9 @@ use crate::joint::HeldOut;
 
 /// Share of what is left of the mismatch that an effect must explain to be taken.
 const LEAST_SHARE: f64 = 0.1;
+/// Share of all that is left, beyond what the sensors leave, that it must explain: no base is so wrong that what no model gets below
+/// makes a twentieth of it a name. Evidence beyond [`STRONG_LOG_RATIO`] and effects that act in a part of the range alone are not asked.
+const LEAST_OF_LEFT: f64 = 0.075;
 /// Share of the whole mismatch that a further effect must explain to be taken, unless its evidence is strong.
 const LEAST_OF_ALL: f64 = 0.04;
 /// The same where held-out recordings will confirm or deny it.
@@ -39,7 +42,10 @@ pub(super) fn worth(tried: &Tried, further: bool, whole: &HeldOut, floor_square:
     let is_confirmed = limits.confirmed && !trial.guess.effect.is_static();
     let least_of_all = if is_confirmed { LEAST_OF_CONFIRMED } else { LEAST_OF_ALL };
     let least_log_ratio = if further { FURTHER_LOG_RATIO } else { LEAST_LOG_RATIO };
-    gained > LEAST_SHARE * mismatch
+    let beyond_sensors = before.mean_square() - limits.sensor_floor_n.powi(2);
+    let stands_out = trial.guess.effect.is_local() || trial.log_ratio > STRONG_LOG_RATIO;
+    (stands_out || gained > LEAST_OF_LEFT * beyond_sensors)
+        && gained > LEAST_SHARE * mismatch
         && gained > matters
         && trial.log_ratio > least_log_ratio
         && (!further || gained > least_of_all * whole || trial.log_ratio > STRONG_LOG_RATIO)
