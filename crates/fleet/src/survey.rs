@@ -10,7 +10,7 @@ use crate::change::{Change, changes};
 use crate::control::{Chart, charts};
 use crate::groups::{GroupShift, groups};
 use crate::plan::FleetPlan;
-use crate::record::{RESIDUALS, Record, verdict_word};
+use crate::record::{Identified, RESIDUALS, Record, verdict_word};
 
 /// What at least this share of a make has says nothing of one muscle of it.
 const COMMON: f64 = 0.5;
@@ -147,7 +147,9 @@ fn standing(
     for chart in charts {
         let of_residual = RESIDUALS.contains(&chart.name.as_str());
         for point in chart.points.iter().filter(|point| chart.is_outside(point)) {
-            if of_residual && (is_named[point.record] || point.value < MUCH) {
+            let is_isolated = |identified: &Identified| identified.isolated.contains(&chart.name.as_str());
+            let few = of_residual && records[point.record].identified.as_ref().is_some_and(is_isolated);
+            if of_residual && (is_named[point.record] || point.value < MUCH) || few {
                 continue;
             }
             let side = if point.distance > 0.0 { "high" } else { "low" };

@@ -27,6 +27,7 @@ pub(crate) fn fleet(n: usize, k1: impl Fn(usize) -> f64) -> Vec<Record> {
             rmse_n: 1.0,
             holdout_rmse_n: None,
             noise_n: 1.0,
+            isolated: Vec::new(),
         }),
         diagnosed: Some(Diagnosed {
             verdict: Verdict::Consistent,
@@ -72,4 +73,22 @@ fn a_refusal_leaves_a_fleet_incomplete() {
     assert!(Survey::of_records(records.clone()).is_complete());
     records[2].outcomes[0] = Outcome::Refused("a.csv:1:1: no".to_owned());
     assert!(!Survey::of_records(records).is_complete());
+}
+
+#[test]
+fn a_residual_that_few_samples_leave_is_no_reason() {
+    let mut records = fleet(40, |_| 1.0);
+    for (index, record) in records.iter_mut().enumerate() {
+        let value = if index < 2 { 4.0 } else { 1.0 + 0.001 * ((index * 37) % 40) as f64 };
+        let identified = record.identified.as_mut().expect("a model");
+        identified.quantities.push(Quantity {
+            name: RESIDUALS[1].to_owned(),
+            unit: "1".to_owned(),
+            value,
+            stderr: None,
+        });
+    }
+    records[0].identified.as_mut().expect("a model").isolated.push(RESIDUALS[1]);
+    let survey = Survey::of_records(records);
+    assert_eq!(survey.standing.iter().map(|standing| standing.record).collect::<Vec<usize>>(), [1]);
 }
