@@ -203,6 +203,7 @@ static PAGE: Page = Page {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::moment::tests::still;
 
     /// Pressure that the muscle sees at the end of `time_s`, where the gauge is `gauge_pa`.
     fn behind_pa(shape: &[f64], step_s: f64, time_s: f64, gauge_pa: &dyn Fn(f64) -> f64) -> f64 {
@@ -210,7 +211,7 @@ mod tests {
         let steps = (time_s / step_s).round() as u32;
         let see = |step: u32| {
             let step_s = if step == 0 { 0.0 } else { step_s };
-            let mut now = Moment { pressure_pa: gauge_pa(f64::from(step) * step_s), step_s, ..Moment::default() };
+            let mut now = Moment { pressure_pa: gauge_pa(f64::from(step) * step_s), step_s, ..still() };
             memory.sees(&mut now);
             now.pressure_pa
         };
@@ -244,7 +245,7 @@ mod tests {
     #[test]
     fn a_late_gauge_is_ahead_of_itself_by_its_rate() {
         let mut memory = PressureLag.start(&Muscle::nominal(), &[-0.05, 0.0]);
-        let mut now = Moment { pressure_pa: 2e5, pressure_rate_pa_per_s: 1e5, step_s: 0.01, ..Moment::default() };
+        let mut now = Moment { pressure_pa: 2e5, pressure_rate_pa_per_s: 1e5, step_s: 0.01, ..still() };
         memory.sees(&mut now);
         assert!((now.pressure_pa - 2.05e5).abs() < 1e-6);
         let seen =
