@@ -40,7 +40,7 @@ impl Effect for PressureLag {
                 symbol: "τ",
                 unit: "s",
                 range: (-0.5, 1.0),
-                grid: &[-0.12, -0.05, -0.02, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32],
+                grid: &[-0.05, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32],
             },
             Shape { name: "air_mass", symbol: "κ", unit: "1", range: (0.0, 2.0), grid: &[0.0, 0.5] },
         ]
