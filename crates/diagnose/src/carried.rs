@@ -13,7 +13,7 @@ use crate::state::{Setting, State};
 use crate::track::Track;
 
 /// What no model carries.
-const OF_THE_FIT: [Group; 2] = [Group::Reversal, Group::Form];
+pub(crate) const OF_THE_FIT: [Group; 2] = [Group::Reversal, Group::Form];
 /// What it carries only where that helps.
 const MAP: [Group; 2] = [Group::EvenMap, Group::OddMap];
 

@@ -17,6 +17,7 @@ use crate::check;
 use crate::discover;
 use crate::error::DiagnoseError;
 use crate::given::Given;
+use crate::held_error::Left;
 use crate::isolability::isolability;
 use crate::knocks::{self, InertialTransient};
 use crate::laws;
@@ -223,11 +224,22 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     {
         sizes = Sizes::of(&found, &question.limits);
     }
+    let (as_given, direction) = (model.force_model(), model.direction);
+    for prepared in &mut holdout {
+        prepared.begin(&as_given, direction.standstill)?;
+    }
+    // At the rate of the recordings, as programs will evaluate what is written.
+    let held_left = |model: &AugmentedModel| {
+        let terms = rig.iter().chain(model.terms()).cloned().collect();
+        Left::at_full_rate(&AugmentedModel::new(model.base().clone(), terms), &holdout, direction)
+            .unwrap_or_else(Left::endless)
+    };
+    let against = held.as_ref().map(|_| discover::HeldAgainst { left: &held_left, given: &as_given });
     given.beside_effects(&question, &track, &found, !rig.is_empty());
     let space = &question.space;
     observer(steps - 1, steps);
     let verdict = verdict(&found, &sizes, knocks.is_some());
-    let discovery = discover::discover(&setting, &found, &sizes, verdict, held.as_ref());
+    let discovery = discover::discover(&setting, &found, &sizes, verdict, against);
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
     let carried = match &discovery {
         Some(_) => None,
