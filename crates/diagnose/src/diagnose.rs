@@ -258,7 +258,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let worst_foretold_n = whole.worst_foretold_n(state);
     let correlated = correlated_instants(&whole, &whole.residuals_n(state));
     let sentences = own::sentences(&whole, state);
-    let (effects, mut entries) = named(&whole, &found, state, &uncertainty, correlated, &sentences, knocks.as_ref());
+    let (mut effects, mut entries) =
+        named(&whole, &found, state, &uncertainty, correlated, &sentences, knocks.as_ref());
     let empirical = discovery.as_ref().map(|discovery| discovery.written(&whole, &found, &folds));
     // Where nothing is named, terms are compared with the base model.
     let without_terms =
@@ -291,8 +292,21 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
+    // Where nothing is written that acts elsewhere, the base stays as it was given unless what was held out is surely followed better
+    // by another one.
+    let events = carried::events_beside(&setting, &found, &as_given);
+    let stays = (effects.is_empty() || events.is_some()) && discovery.is_none() && knocks.is_none() && {
+        let refitted = AugmentedModel::new(state.model.clone(), terms.clone());
+        against.is_some_and(|against| !against.left_as_given().is_surely_bettered_by(&(against.left)(&refitted)))
+    };
+    let base = if stays { as_given.clone() } else { state.model.clone() };
+    if stays {
+        terms = events.unwrap_or_default();
+        entries.truncate(terms.len());
+        resized(&mut entries, &mut effects, &terms);
+    }
     entries.splice(0..0, rig.iter().map(rig::entry));
-    let augmented = AugmentedModel::new(state.model.clone(), rig.into_iter().chain(terms).collect());
+    let augmented = AugmentedModel::new(base, rig.into_iter().chain(terms).collect());
     for prepared in estimation.iter_mut().chain(&mut holdout) {
         prepared.begin(augmented.base(), model.direction.standstill)?;
     }
@@ -327,6 +341,17 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         config,
     };
     Ok(diagnosis)
+}
+
+/// Gives `entries`, and the `effects` of their ids, the sizes that `terms` have, in order.
+fn resized(entries: &mut [EffectEntry], effects: &mut [NamedEffect], terms: &[Term]) {
+    for (entry, term) in entries.iter_mut().zip(terms) {
+        let sizes = entry.parameters.iter_mut().skip(term.shape.len());
+        sizes.zip(&term.amplitudes).for_each(|(parameter, &size)| parameter.value = size);
+        for effect in effects.iter_mut().filter(|effect| effect.id == entry.id) {
+            effect.parameters.clone_from(&entry.parameters);
+        }
+    }
 }
 
 /// Recordings as directions are found in them.
