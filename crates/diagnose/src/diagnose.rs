@@ -17,6 +17,7 @@ use crate::check;
 use crate::discover;
 use crate::error::DiagnoseError;
 use crate::given::Given;
+use crate::held_error::Left;
 use crate::isolability::isolability;
 use crate::knocks::{self, InertialTransient};
 use crate::laws;
@@ -223,11 +224,22 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     {
         sizes = Sizes::of(&found, &question.limits);
     }
+    let (as_given, direction) = (model.force_model(), model.direction);
+    for prepared in &mut holdout {
+        prepared.begin(&as_given, direction.standstill)?;
+    }
+    // At the rate of the recordings, as programs will evaluate what is written.
+    let held_left = |model: &AugmentedModel| {
+        let terms = rig.iter().chain(model.terms()).cloned().collect();
+        Left::at_full_rate(&AugmentedModel::new(model.base().clone(), terms), &holdout, direction)
+            .unwrap_or_else(Left::endless)
+    };
+    let against = held.as_ref().map(|_| discover::HeldAgainst { left: &held_left, given: &as_given });
     given.beside_effects(&question, &track, &found, !rig.is_empty());
     let space = &question.space;
     observer(steps - 1, steps);
     let verdict = verdict(&found, &sizes, knocks.is_some());
-    let discovery = discover::discover(&setting, &found, &sizes, verdict, held.as_ref());
+    let discovery = discover::discover(&setting, &found, &sizes, verdict, against);
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
     let carried = match &discovery {
         Some(_) => None,
@@ -246,7 +258,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let worst_foretold_n = whole.worst_foretold_n(state);
     let correlated = correlated_instants(&whole, &whole.residuals_n(state));
     let sentences = own::sentences(&whole, state);
-    let (effects, mut entries) = named(&whole, &found, state, &uncertainty, correlated, &sentences, knocks.as_ref());
+    let (mut effects, mut entries) =
+        named(&whole, &found, state, &uncertainty, correlated, &sentences, knocks.as_ref());
     let empirical = discovery.as_ref().map(|discovery| discovery.written(&whole, &found, &folds));
     // Where nothing is named, terms are compared with the base model.
     let without_terms =
@@ -279,8 +292,21 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
+    // Where nothing is written that acts elsewhere, the base stays as it was given unless what was held out is surely followed better
+    // by another one.
+    let events = carried::events_beside(&setting, &found, &as_given);
+    let stays = (effects.is_empty() || events.is_some()) && discovery.is_none() && knocks.is_none() && {
+        let refitted = AugmentedModel::new(state.model.clone(), terms.clone());
+        against.is_some_and(|against| !against.left_as_given().is_surely_bettered_by(&(against.left)(&refitted)))
+    };
+    let base = if stays { as_given.clone() } else { state.model.clone() };
+    if stays {
+        terms = events.unwrap_or_default();
+        entries.truncate(terms.len());
+        resized(&mut entries, &mut effects, &terms);
+    }
     entries.splice(0..0, rig.iter().map(rig::entry));
-    let augmented = AugmentedModel::new(state.model.clone(), rig.into_iter().chain(terms).collect());
+    let augmented = AugmentedModel::new(base, rig.into_iter().chain(terms).collect());
     for prepared in estimation.iter_mut().chain(&mut holdout) {
         prepared.begin(augmented.base(), model.direction.standstill)?;
     }
@@ -315,6 +341,17 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         config,
     };
     Ok(diagnosis)
+}
+
+/// Gives `entries`, and the `effects` of their ids, the sizes that `terms` have, in order.
+fn resized(entries: &mut [EffectEntry], effects: &mut [NamedEffect], terms: &[Term]) {
+    for (entry, term) in entries.iter_mut().zip(terms) {
+        let sizes = entry.parameters.iter_mut().skip(term.shape.len());
+        sizes.zip(&term.amplitudes).for_each(|(parameter, &size)| parameter.value = size);
+        for effect in effects.iter_mut().filter(|effect| effect.id == entry.id) {
+            effect.parameters.clone_from(&entry.parameters);
+        }
+    }
 }
 
 /// Recordings as directions are found in them.

@@ -2,11 +2,13 @@
 
 use pam_core::artifact::diagnosis::Verdict;
 use pam_core::effects::{AugmentedModel, Sentence, Term};
+use pam_core::force::ForceModel;
 
 use super::bends::{PREFERRED, bends};
 use super::field::Field;
 use super::screen::{self, Said};
 use super::{joined, stability};
+use crate::carried::OF_THE_FIT;
 use crate::held_error::Left;
 use crate::joint::HeldOut;
 use crate::nuisance::{Group, Nuisance};
@@ -16,9 +18,13 @@ use crate::track::Track;
 use crate::verdict::Sizes;
 
 /// Terms that may be written.
-const MOST_TERMS: usize = 2;
+const MOST_TERMS: usize = 3;
 /// Sentences that are fitted jointly before the best of them is taken.
 const FITTED: usize = 3;
+/// The best of so many drivers and memories are fitted as well, whichever scale they have.
+const WORDS_FITTED: usize = 4;
+/// Share of the evidence of the best at which another one is not told from it by blocks.
+const CLOSE: f64 = 0.85;
 /// Evidence over held-out blocks that a term needs.
 const LEAST_LOG_RATIO: f64 = 3.0;
 /// Share of the mean square over held-out blocks that it must take away.
@@ -80,6 +86,31 @@ impl Step {
     }
 }
 
+/// A step with one more term that may be taken.
+struct Candidate {
+    step: Step,
+    /// Evidence over held-out blocks, less what its degrees of freedom have to bring.
+    log_ratio: f64,
+    /// Whether the term bends what was named.
+    bends: bool,
+}
+
+impl Candidate {
+    /// Whether blocks hardly prefer `first` to it.
+    fn is_as_good_as(&self, first: &Self) -> bool {
+        self.bends == first.bends && self.log_ratio >= CLOSE * first.log_ratio
+    }
+}
+
+/// Recordings that nothing was fitted to, and the model as it was given, which anything written must follow them better than.
+#[derive(Clone, Copy)]
+pub(crate) struct HeldAgainst<'a> {
+    /// What a model leaves of them.
+    pub(crate) left: &'a dyn Fn(&AugmentedModel) -> Left,
+    /// The model as it was given.
+    pub(crate) given: &'a ForceModel,
+}
+
 /// Looks for terms on what `found` leaves of `setting`, if `verdict` says that something is left; none where nothing gains on
 /// `held`, or where there is nothing held out on the blocks.
 pub(crate) fn discover(
@@ -87,44 +118,92 @@ pub(crate) fn discover(
     found: &Found,
     sizes: &Sizes,
     verdict: Verdict,
-    held: Option<&Track>,
+    held: Option<HeldAgainst<'_>>,
 ) -> Option<Discovery> {
     let left_over = match verdict {
         Verdict::Unexplained => true,
         Verdict::Explained | Verdict::Ambiguous => sizes.best_n > LEAVES_ENOUGH * sizes.sensors_n,
-        Verdict::Consistent | Verdict::ExplainedInPart => false,
+        Verdict::Consistent => held.is_some(),
+        Verdict::ExplainedInPart => false,
     };
     if !left_over {
         return None;
     }
-    let left = |step: &Step| held.map(|held| Left::of(&step.model(found, setting.track), held));
     let start = Step { best: found.best.clone(), nuisance: found.nuisance.clone(), terms: Vec::new() };
-    // A static map that carries held-out recordings away makes no gain of a term that brings them back.
-    let bare = held.map(|held| Left::of(&AugmentedModel::new(found.base.state.model.clone(), Vec::new()), held));
-    let before =
-        left(&start).into_iter().chain(bare).min_by(|one, other| one.together_n().total_cmp(&other.together_n()));
     let without_terms = start.model(found, setting.track);
     let (plain, mapped) = nuisances(setting, found)?;
+    let left = |step: &Step| held.map(|held| (held.left)(&step.model(found, setting.track)));
+    let mut last = held.map(|held| held.least(&without_terms, found));
     let mut smooth =
         Step { best: again(&setting.beside(&mapped), &found.best)?, nuisance: mapped.clone(), terms: Vec::new() };
     let mut kept: Option<Step> = None;
-    let mut last = before;
     while smooth.terms.len() < MOST_TERMS {
-        let Some(next) = next_term(setting, &mapped, &smooth) else { break };
-        let now_kept = without_map(setting, &plain, &next)?;
-        let now = left(&now_kept);
-        let written = &next.terms[next.terms.len() - 1];
-        let is_confirmed = match (&last, &now) {
-            (Some(last), Some(now)) => last.is_bettered_by(now),
-            _ => chance(&written.without, &written.with) * LOOKS < CHANCE,
+        let confirmed = |Candidate { step: next, .. }: Candidate| {
+            let now_kept = without_map(setting, &plain, &next)?;
+            let now = left(&now_kept);
+            let written = &next.terms[next.terms.len() - 1];
+            let is_no_chance = || chance(&written.without, &written.with) * LOOKS < CHANCE;
+            let is_confirmed = match (&last, &now) {
+                // Where nothing has to be missing, blocks and hold-outs have to agree.
+                (Some(last), Some(now)) => {
+                    last.is_surely_bettered_by(now) && (verdict != Verdict::Consistent || is_no_chance())
+                }
+                _ => is_no_chance(),
+            };
+            is_confirmed.then_some((next, now, now_kept))
         };
-        if !is_confirmed {
-            break;
-        }
+        let mut candidates = next_terms(setting, &mapped, &smooth);
+        // What blocks hardly tell apart, hold-outs do.
+        let close = candidates.iter().take_while(|candidate| candidate.is_as_good_as(&candidates[0])).count();
+        let rest = candidates.split_off(if held.is_some() { close } else { close.min(1) });
+        let left_n = |now: &Option<Left>| now.as_ref().map_or(0.0, Left::together_n);
+        let best = candidates.into_iter().filter_map(confirmed);
+        let best = best.min_by(|one, other| left_n(&one.1).total_cmp(&left_n(&other.1)));
+        let next = best.or_else(|| rest.into_iter().find_map(confirmed));
+        let Some((next, now, now_kept)) = next else { break };
         (smooth, last, kept) = (next, now, Some(now_kept));
     }
-    let Step { best, nuisance, terms } = kept?;
+    let kept = kept?;
+    let Step { best, nuisance, terms } = match held {
+        Some(held) => foretells_most(setting, found, &[&plain, &mapped], kept, held),
+        None => kept,
+    };
     Some(Discovery { best, nuisance, terms, without_terms, before: found.best.held_out.clone() })
+}
+
+impl HeldAgainst<'_> {
+    /// What the model as given leaves of them.
+    pub(crate) fn left_as_given(&self) -> Left {
+        (self.left)(&AugmentedModel::new(self.given.clone(), Vec::new()))
+    }
+
+    /// What is left by the best of `model`, the base of `found` refitted and the model as given: a map, or a base refitted, that
+    /// carries held-out recordings away makes no gain of a term that brings them back.
+    fn least(&self, model: &AugmentedModel, found: &Found) -> Left {
+        let bare = [&found.base.state.model, self.given].map(|base| AugmentedModel::new(base.clone(), Vec::new()));
+        let left = std::iter::once(model).chain(&bare).map(|model| (self.left)(model));
+        left.min_by(|one, other| one.together_n().total_cmp(&other.together_n())).unwrap_or_else(Left::endless)
+    }
+}
+
+/// `step` as it foretells `held` best: beside one of `beside`, or what a model carries of it.
+fn foretells_most(
+    setting: &Setting<'_>,
+    found: &Found,
+    beside: &[&Nuisance],
+    step: Step,
+    held: HeldAgainst<'_>,
+) -> Step {
+    let left_n = |step: &Step| (held.left)(&step.model(found, setting.track)).together_n();
+    let others = beside.iter().flat_map(|&nuisance| [nuisance.clone(), nuisance.without(&OF_THE_FIT)]);
+    let others = others.filter_map(|bare| {
+        let (best, nuisance) = joined::joined(setting, &bare, &step.best, &step.sentences())?;
+        Some(Step { best, nuisance, terms: step.terms.clone() })
+    });
+    let others: Vec<(f64, Step)> = others.map(|other| (left_n(&other), other)).collect();
+    let as_it_is = (left_n(&step), step.clone());
+    let all = std::iter::once(as_it_is).chain(others);
+    all.min_by(|one, other| one.0.total_cmp(&other.0)).map_or(step, |(_, least)| least)
 }
 
 /// What is in beside sentences: nuisances without a static map, and with one that is as smooth as foretells held-out blocks best,
@@ -143,53 +222,62 @@ fn without_map(setting: &Setting<'_>, plain: &Nuisance, step: &Step) -> Option<S
     Some(if keeps { step.clone() } else { Step { best: bare, nuisance, terms: step.terms.clone() } })
 }
 
-/// `step` with one more term that gains on held-out blocks; `mapped` is what is in beside terms.
-fn next_term(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Option<Step> {
+/// `step` with one more term that gains on held-out blocks, the one that gains most first; `mapped` is what is in beside terms.
+fn next_terms(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Vec<Candidate> {
     let best = &step.best;
     let beside = setting.beside(&step.nuisance);
-    let field = Field::of(&beside, &best.state)?;
+    let Some(field) = Field::of(&beside, &best.state) else { return Vec::new() };
     let said = screen::screen(&field, &beside, &best.state);
     let bent = |said: &Said| bends(&said.sentence, &best.state.guesses);
     // The first that bends what was named is looked at wherever it stands.
     let first_bent = said.iter().position(|said| bent(said).is_some()).filter(|index| *index >= FITTED);
-    let looked_at = (0..said.len().min(FITTED)).chain(first_bent);
-    let fitted = looked_at.filter_map(|index| {
+    let mut looked_at: Vec<usize> = (0..said.len().min(FITTED)).chain(first_bent).collect();
+    let firsts = (0..said.len()).filter(|&index| !said[..index].iter().any(|before| before.has_words_of(&said[index])));
+    looked_at.extend(firsts.take(WORDS_FITTED).filter(|index| !looked_at.contains(index)).collect::<Vec<_>>());
+    let fitted = looked_at.into_iter().filter_map(|index| {
         let said = &said[index];
         let sentences = [step.sentences(), vec![said.sentence.clone()]].concat();
         let (next, nuisance) = joined::joined(setting, mapped, best, &sentences)?;
         Some((best.held_out.log_ratio(&next.held_out) - said.charge(), index, next, nuisance))
     });
-    let fitted: Vec<(f64, usize, Judged, Nuisance)> = fitted.collect();
+    let mut fitted: Vec<(f64, usize, Judged, Nuisance)> = fitted.collect();
     // Another form of what was named comes before anything else that is there.
     let most = fitted.iter().map(|fitted| fitted.0).fold(f64::NEG_INFINITY, f64::max);
     let is_bent =
         |fitted: &(f64, usize, Judged, Nuisance)| bent(&said[fitted.1]).is_some() && fitted.0 > PREFERRED * most;
-    let any_bent = fitted.iter().any(is_bent);
-    let (log_ratio, index, next, nuisance) = fitted
-        .into_iter()
-        .filter(|fitted| !any_bent || is_bent(fitted))
-        .max_by(|left, right| left.0.total_cmp(&right.0))?;
-    let gained = best.held_out.mean_square() - next.held_out.mean_square();
-    if log_ratio < LEAST_LOG_RATIO || gained < LEAST_SHARE * best.held_out.mean_square() {
-        return None;
+    fitted.sort_by(|left, right| is_bent(right).cmp(&is_bent(left)).then(right.0.total_cmp(&left.0)));
+    let gains = |fitted: &(f64, usize, Judged, Nuisance)| {
+        let gained = best.held_out.mean_square() - fitted.2.held_out.mean_square();
+        fitted.0 >= LEAST_LOG_RATIO && gained >= LEAST_SHARE * best.held_out.mean_square()
+    };
+    fitted.retain(gains);
+    if fitted.is_empty() {
+        return Vec::new();
     }
     let shares = stability::chosen(&field, &said);
-    let mut chosen: Vec<(Said, f64)> = said.into_iter().zip(shares).collect();
-    let own = chosen.remove(index);
-    chosen.sort_by(|left, right| right.1.total_cmp(&left.1));
-    let sentence = own.0.sentence.clone();
-    chosen.insert(0, own);
-    let (without, with) = (best.held_out.clone(), next.held_out.clone());
-    let mut terms = step.terms.clone();
-    let bends = bends(&sentence, &best.state.guesses);
-    terms.push(Written { sentence, bends, without, with, chosen });
-    Some(Step { best: next, nuisance, terms })
+    let with = |(log_ratio, index, next, nuisance): (f64, usize, Judged, Nuisance)| {
+        let mut chosen: Vec<(Said, f64)> = said.iter().cloned().zip(shares.iter().copied()).collect();
+        let own = chosen.remove(index);
+        chosen.sort_by(|left, right| right.1.total_cmp(&left.1));
+        let sentence = own.0.sentence.clone();
+        chosen.insert(0, own);
+        let (without, with) = (best.held_out.clone(), next.held_out.clone());
+        let mut terms = step.terms.clone();
+        let bends = bends(&sentence, &best.state.guesses);
+        terms.push(Written { sentence, bends, without, with, chosen });
+        Candidate { log_ratio, bends: bends.is_some(), step: Step { best: next, nuisance, terms } }
+    };
+    fitted.into_iter().map(with).collect()
 }
 
 impl Discovery {
     /// Verdict of a diagnosis that holds terms without a name: nothing is explained by them.
     pub(crate) fn verdict(&self, verdict: Verdict) -> Verdict {
-        if verdict == Verdict::Explained { Verdict::ExplainedInPart } else { verdict }
+        match verdict {
+            Verdict::Explained => Verdict::ExplainedInPart,
+            Verdict::Consistent => Verdict::Unexplained,
+            verdict => verdict,
+        }
     }
 
     /// The terms as a model carries them.
@@ -219,7 +307,9 @@ mod tests {
         let sizes = Sizes::of(&found, &limits);
         let said = verdict(&found, &sizes, false);
         let beside = setting.beside(&found.nuisance);
-        let discovery = discover(&beside, &found, &sizes, said, held.map(|held| &held.track));
+        let left = |model: &AugmentedModel| Left::of(model, &held.expect("a hold-out").track);
+        let against = held.map(|held| HeldAgainst { left: &left, given: &held.model });
+        let discovery = discover(&beside, &found, &sizes, said, against);
         discovery.map_or_else(Vec::new, |discovery| discovery.terms.into_iter().map(|term| term.sentence).collect())
     }
 

@@ -2,12 +2,14 @@
 //!
 //! Where something is left that no effect of the catalogue explains, the [sentence](pam_core::effects::sentence) of the grammar
 //! that foretells held-out blocks best, for its degrees of freedom, is fitted jointly with the base and what was named. It is
-//! written only where held-out recordings, or where there are none the blocks, are foretold better with it.
+//! written only where held-out recordings, or where there are none the blocks, are foretold better with it: at the rate of the
+//! recordings, as programs will evaluate it, by more than the standard error of the gain, and better than by the model as given.
+//! Where they deny the best, the next is asked for, and of those that blocks hardly tell apart they choose one.
 //!
 //! In reading order: [`discovery`] goes on as long as something gains; [`lexicon`] is what sentences are made of, [`field`]
 //! judges one, [`screen`] finds the best, [`joined`] fits it with everything else, [`held_error`](crate::held_error) asks what
-//! was held out, [`bends`] whether the term is another form of what was named, [`stability`] whether other draws of blocks would choose it, [`written`], [`curve`], [`nearest`] and [`said`]
-//! are what a person reads of it.
+//! was held out, [`bends`] whether the term is another form of what was named, [`stability`] whether other draws of blocks would
+//! choose it, [`written`], [`curve`], [`nearest`] and [`said`] are what a person reads of it.
 
 mod bends;
 mod curve;
@@ -21,5 +23,5 @@ mod screen;
 mod stability;
 mod written;
 
-pub(crate) use discovery::{Discovery, discover};
+pub(crate) use discovery::{Discovery, HeldAgainst, discover};
 pub(crate) use written::statement;

@@ -56,6 +56,12 @@ impl Said {
         charge(&self.sentence, self.evidence)
     }
 
+    /// Whether `other` has the same driver and memory, whatever the numbers and the scale.
+    pub(super) fn has_words_of(&self, other: &Self) -> bool {
+        let words = |said: &Self| (said.sentence.driver.name(), said.sentence.memory.name());
+        words(self) == words(other)
+    }
+
     /// Whether `other` differs from it by numbers alone.
     pub(super) fn is_like(&self, other: &Sentence) -> bool {
         alike(&self.sentence, other)
