@@ -314,9 +314,7 @@ class PressureLag:
 
     def sees(self, now):
         gauge_pa, muscle_pa_per_s = now.pressure_pa, 0.0
-        if self.time_constant_s <= 0.0:
-            now.pressure_pa -= self.time_constant_s * now.pressure_rate_pa_per_s
-        elif self.last is not None and now.step_s > 0.0:
+        if self.last is not None and now.step_s > 0.0:
             last_gauge_pa, last_muscle_pa, last_pa_per_s = self.last
             rate_pa_per_s = (gauge_pa - last_gauge_pa) / now.step_s
             behind_pa = self.time_constant_s * rate_pa_per_s

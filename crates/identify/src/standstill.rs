@@ -21,7 +21,7 @@ use crate::error::IdentifyError;
 use crate::prepare::Prepared;
 
 /// Pressures over which friction may turn over, in Pa; nothing for any change that is not noise.
-const OVER_PA: [f64; 8] = [0.0, 2.5e3, 5e3, 1e4, 2e4, 4e4, 8e4, 1.6e5];
+const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 
 /// Shares of the friction that the pressure may bring about, less than all of it.
 const SHARES: [f64; 4] = [0.8, 0.6, 0.4, 0.2];

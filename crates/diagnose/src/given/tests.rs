@@ -202,7 +202,8 @@ fn effects_that_explain_what_the_parameters_as_given_miss_take_it_back() {
     let ramps = recorded("ramps.csv", RAMPS, &model, 1.0);
     // The same parameters, recorded by a rig whose gauge lags by 0.4 s: nothing that eq. 11 has follows that.
     let lag = pam_core::effects::effect("pressure-lag").expect("an id");
-    let lagging = AugmentedModel::new(model.force_model(), vec![pam_core::effects::Term::new(lag, vec![0.4], vec![])]);
+    let lagging =
+        AugmentedModel::new(model.force_model(), vec![pam_core::effects::Term::new(lag, vec![0.4, 0.0], vec![])]);
     let estimation = {
         let as_modelled = |prepared: &Prepared| {
             let trace = trace_augmented(prepared, &lagging, model.direction, 0).expect("a trace");

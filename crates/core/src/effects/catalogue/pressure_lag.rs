@@ -1,19 +1,17 @@
-//! Pressure lag: the muscle's pressure follows the gauge's through a tube, or the gauge follows the muscle.
+//! Pressure lag: the muscle's pressure follows the gauge's through a tube.
 //!
 //! ```text
-//! κ τ² d²p_m/dt² + τ dp_m/dt + p_m = p,   τ > 0
-//! p_m = p - τ dp/dt,                      τ < 0
+//! κ τ² d²p_m/dt² + τ dp_m/dt + p_m = p
 //! ```
 //!
 //! The resistance of the tube and the volume behind it make `τ`; the air in a long or wide tube has a mass besides, with which the
 //! pressure follows later at first and may swing: `κ = 1 / (4 ζ²)` by the damping ratio `ζ`. Each step is solved exactly for a gauge
-//! pressure that moves evenly between two moments. A gauge at the muscle that is slow itself is late behind it, and its smooth rate says by
-//! how much.
+//! pressure that moves evenly between two moments.
 
 use crate::artifact::diagnosis::Coordinate;
 use crate::effects::lag::Lag;
 use crate::effects::page::{Confusion, Page, Symbol, Typical};
-use crate::effects::{Effect, Kind, Memory, Moment, Role, Seen, Shape};
+use crate::effects::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::muscle::Muscle;
 
 /// The effect.
@@ -39,18 +37,11 @@ impl Effect for PressureLag {
                 name: "time_constant_s",
                 symbol: "τ",
                 unit: "s",
-                range: (-0.5, 1.0),
-                grid: &[-0.05, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32],
+                range: (1e-3, 1.0),
+                grid: &[0.01, 0.02, 0.04, 0.08, 0.16, 0.32],
             },
             Shape { name: "air_mass", symbol: "κ", unit: "1", range: (0.0, 2.0), grid: &[0.0, 0.5] },
         ]
-    }
-
-    fn first_shapes(&self, _seen: &Seen) -> Vec<Vec<f64>> {
-        let [times, masses] = [0, 1].map(|index| self.shape()[index].grid);
-        let both = times.iter().flat_map(|&time_s| masses.iter().map(move |&mass| vec![time_s, mass]));
-        // There is no air in a gauge.
-        both.filter(|shape| shape[0] > 0.0 || shape[1] == 0.0).collect()
     }
 
     /// The mass of the air says how the pressure follows, not what it does.
@@ -64,9 +55,6 @@ impl Effect for PressureLag {
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         let (time_constant_s, air_mass) = (shape[0], shape[1]);
-        if time_constant_s <= 0.0 {
-            return Box::new(LateGauge { late_s: -time_constant_s });
-        }
         if air_mass < LEAST_AIR_MASS {
             return Box::new(FirstOrder { time_constant_s, muscle_pa: Lag::default() });
         }
@@ -76,16 +64,6 @@ impl Effect for PressureLag {
 
 /// Share below which air has no mass: what the pressure does within the first thousandth of the lag shows in no recording.
 const LEAST_AIR_MASS: f64 = 1e-3;
-
-struct LateGauge {
-    late_s: f64,
-}
-
-impl Memory for LateGauge {
-    fn sees(&mut self, now: &mut Moment) {
-        now.pressure_pa += self.late_s * now.pressure_rate_pa_per_s;
-    }
-}
 
 struct FirstOrder {
     time_constant_s: f64,
@@ -159,14 +137,10 @@ static PAGE: Page = Page {
     id: "pressure-lag",
     name: "lag of the pressure in the tube",
     summary: "The gauge sits at the valve and the muscle behind a tube, so the pressure in the muscle follows what is \
-              recorded with a lag. Where the gauge sits at the muscle and is slow itself, what is recorded follows the muscle.",
-    equation: "κ τ² d²p_m/dt² + τ dp_m/dt + p_m = p  or, τ < 0,  p_m = p - τ dp/dt,  F = F_base(p_m, L)",
+              recorded with a lag.",
+    equation: "κ τ² d²p_m/dt² + τ dp_m/dt + p_m = p,  F = F_base(p_m, L)",
     symbols: &[
-        Symbol {
-            symbol: "τ",
-            unit: "s",
-            meaning: "time constant; 20 to 150 ms for 1 to 3 m of tube of 2.5 mm bore, below zero for a gauge that is late",
-        },
+        Symbol { symbol: "τ", unit: "s", meaning: "time constant; 20 to 150 ms for 1 to 3 m of tube of 2.5 mm bore" },
         Symbol {
             symbol: "κ",
             unit: "1",
@@ -240,17 +214,6 @@ mod tests {
             // The gauge has no step shorter than that of time.
             assert!((pa - expected_pa).abs() < 2e6 * step_s, "{step_s}: {pa}, {expected_pa}");
         }
-    }
-
-    #[test]
-    fn a_late_gauge_is_ahead_of_itself_by_its_rate() {
-        let mut memory = PressureLag.start(&Muscle::nominal(), &[-0.05, 0.0]);
-        let mut now = Moment { pressure_pa: 2e5, pressure_rate_pa_per_s: 1e5, step_s: 0.01, ..still() };
-        memory.sees(&mut now);
-        assert!((now.pressure_pa - 2.05e5).abs() < 1e-6);
-        let seen =
-            Seen { contraction_ratio: (0.0, 0.2), pressure_pa: (0.0, 5e5), force_n: (0.0, 9e2), duration_s: 60.0 };
-        assert!(PressureLag.first_shapes(&seen).iter().all(|shape| shape[0] > 0.0 || shape[1] == 0.0));
     }
 
     #[test]

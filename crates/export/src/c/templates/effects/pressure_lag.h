@@ -8,9 +8,7 @@ static inline void pam_pressure_lag_sees(pam_pressure_lag *memory, pam_moment *n
     const double lag_s = PAM_PRESSURE_LAG_TIME_CONSTANT_S, air_mass = PAM_PRESSURE_LAG_AIR_MASS;
     const double gauge_pa = now->pressure_pa;
     double muscle_pa_per_s = 0.0;
-    if (lag_s <= 0.0) {
-        now->pressure_pa = gauge_pa - lag_s * now->pressure_rate_pa_per_s;
-    } else if (memory->started && now->step_s > 0.0) {
+    if (memory->started && now->step_s > 0.0) {
         const double rate_pa_per_s = (gauge_pa - memory->gauge_pa) / now->step_s;
         double off_pa = memory->muscle_pa - (memory->gauge_pa - lag_s * rate_pa_per_s);
         if (air_mass < 1e-3) {
