@@ -33,11 +33,9 @@ const PIECES: usize = 16;
 
 /// Standard error of that share from which on what was held out tells nothing of an effect.
 const TELLS: f64 = 0.3;
-/// Evidence within what was fitted that stands where nothing held out tells, and where held-out recordings surely show an effect, but
-/// with less than half of its size: that is the effect in another form, an amplifier that has warmed up by then, or air that is
-/// throttled by its flow. Of 184 cases that this was chosen by, eleven right names that were or would have been lost had 16 to 41, and
-/// five wrong ones 9 to 14.
-const STANDS_ALONE: f64 = 15.0;
+/// Evidence within what was fitted that stands where nothing held out tells. Of 400 cases that this was chosen by, all five effects
+/// with more were right that do not outlast a recording, and both with 9 to 10 were wrong.
+const STANDS_ALONE: f64 = 10.0;
 
 /// Searches again without what was denied, at most.
 const MOST_AGAIN: usize = 2;
@@ -168,13 +166,11 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
         // What acts in a part of the range alone may not have been there.
         let stands = strongest == Some(index) || guess.effect.is_static();
         let too_large = share.is_some_and(|share| share.is_too_large(guess.effect));
-        let is_misshapen = evidence(found, index) > STANDS_ALONE && share.is_some_and(Share::is_there);
-        let is_denied = share.is_some_and(|share| share.denies(guess.effect)) && (too_large || !is_misshapen);
+        let is_denied = share.is_some_and(|share| share.denies(guess.effect));
         let tells = share.is_some_and(|share| share.error < TELLS);
         let is_open = !guess.effect.outlasts() || matches!(guess.beginning, Beginning::GoesOn(_));
         let stands = stands || !tells && is_open && evidence(found, index) > STANDS_ALONE;
-        let is_left_of = |strongest: usize| evidence(found, index) < evidence(found, strongest);
-        let is_unseen = !stands && strongest.is_some_and(is_left_of) && share.is_none_or(|share| !share.is_there());
+        let is_unseen = !stands && share.is_none_or(|share| share.least() <= 0.0);
         // What is denied goes before what is only not seen.
         let most = match share {
             Some(share) if is_denied => share.most(),
@@ -239,11 +235,6 @@ impl Share {
     /// Whether it surely shows the effect.
     pub(crate) fn shows(self) -> bool {
         self.least() > SEEN
-    }
-
-    /// Whether it surely shows something of the effect.
-    fn is_there(self) -> bool {
-        self.least() > 0.0
     }
 
     /// Whether it surely speaks against `effect`: it is not there, or something larger is.
@@ -381,21 +372,6 @@ mod tests {
         };
         assert!((seen(60.0).value - 1.5).abs() < 0.1 && seen(60.0).least() < MOST_SEEN, "{:?}", seen(60.0));
         assert!(seen(120.0).least() > MOST_SEEN, "{:?}", seen(120.0));
-    }
-
-    #[test]
-    fn strong_evidence_keeps_an_effect_that_is_surely_there_in_another_form_and_loses_one_that_is_not() {
-        let lag: (&'static str, &[f64], &[f64]) = ("pressure-lag", &[0.15, 0.0], &[]);
-        let mut given = Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[lag]);
-        given.disturb();
-        let limits = Limits { confirmed: true, ..Limits::of_test(1, 0.3) };
-        let setting = Setting { floor_square: 0.09, ..given.setting() };
-        let mut found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
-        let is_denied = |found: &Found, value| denied(found, &[Some(Share { value, error: 0.02 })]).is_some();
-        assert!(evidence(&found, 0) > STANDS_ALONE);
-        assert!(!is_denied(&found, 0.2) && is_denied(&found, 0.0) && is_denied(&found, 4.0));
-        found.taken[0].without = found.taken[0].with.clone();
-        assert!(is_denied(&found, 0.2));
     }
 
     #[test]
