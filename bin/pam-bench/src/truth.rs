@@ -5,6 +5,7 @@ use pam_core::muscle::Muscle;
 use pam_virtual_bench::draw::{DrawnParameter, Place};
 use pam_virtual_bench::sensors::{Channel, Clock, Sensors};
 use pam_virtual_bench::{Bench, ConcealedEffect, Parameters, Protocol};
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -14,11 +15,12 @@ use crate::args::Args;
 const SCHEMA: &str = "pam-bench-truth/1";
 
 /// The truth behind a log.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Truth {
     /// `pam-bench-truth/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(test, schemars(extend("const" = SCHEMA)))]
     schema: &'static str,
     /// Program that wrote it.
     tool: Tool,
@@ -41,7 +43,8 @@ pub(crate) struct Truth {
 }
 
 /// Options that the bench was run with.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct BenchConfig {
     /// Name of the protocol.
@@ -67,7 +70,8 @@ struct BenchConfig {
 }
 
 /// A parameter of the muscle.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct TrueParameter {
     /// Name, as in a model.
@@ -79,7 +83,8 @@ struct TrueParameter {
 }
 
 /// A concealed effect.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct EffectEntry {
     /// Id, as a diagnosis names it.
@@ -93,7 +98,8 @@ struct EffectEntry {
 }
 
 /// A region.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct PlaceEntry {
     /// `time`, `pressure`, `contraction`, `speed`, `travel_since_reversal`, `time_since_last_move`, `cycle` or `force`.
@@ -127,7 +133,8 @@ impl EffectEntry {
 }
 
 /// One channel of the logger.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct SensorEntry {
     /// Column of the log.
@@ -188,6 +195,24 @@ impl Truth {
                 SensorEntry::of("length_mm", length_mm),
                 SensorEntry::of("force_N", force_n),
             ],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use pam_core::artifact::schemas;
+
+    #[test]
+    fn the_published_schema_is_that_of_the_truth() {
+        let text = format!("{:#}\n", schemars::schema_for!(Truth).to_value());
+        if std::env::var_os("PAM_WRITE_SCHEMAS").is_some() {
+            let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/core/schemas/");
+            std::fs::write(format!("{folder}pam-bench-truth-1.json"), text).expect("a writable folder");
+        } else {
+            assert!(schemas::BENCH_TRUTH == text, "the published schema is stale; run scripts/schemas");
         }
     }
 }

@@ -2,12 +2,7 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use schemars::JsonSchema;
-
-use pam_core::artifact::{AgreementArtifact, ChangeArtifact, GroupArtifact, SummaryArtifact};
-use pam_core::recording::ChannelsFile;
-
-use crate::message::Message;
+use pam_core::artifact::schemas;
 
 /// Option, and kind of schema, of the file that says what columns mean.
 const CHANNELS: &str = "channels";
@@ -21,14 +16,6 @@ const GROUP: &str = "group";
 const AGREEMENT: &str = "agreement";
 /// See [`AGREEMENT`].
 const SUMMARY: &str = "summary";
-
-/// Gives the text of a JSON schema.
-pub(crate) type Schema = fn() -> String;
-
-/// The JSON schema of `T`; ends with a line break.
-pub(crate) fn schema<T: JsonSchema>() -> String {
-    format!("{:#}\n", schemars::schema_for!(T).to_value())
-}
 
 /// `command` with the options below; `has_artifact` where the program writes an artifact that has a schema.
 pub(crate) fn with_options(command: Command, has_artifact: bool) -> Command {
@@ -84,19 +71,19 @@ pub(crate) fn with_options(command: Command, has_artifact: bool) -> Command {
 pub(crate) fn asked_for(
     matches: &ArgMatches,
     command: impl FnOnce() -> Command,
-    artifact: Option<Schema>,
+    artifact: Option<&str>,
 ) -> Option<Vec<u8>> {
     if let Some(of) = matches.get_one::<String>("schema") {
         let schema = match of.as_str() {
-            CHANNELS => schema::<ChannelsFile>,
-            SINCE => schema::<ChangeArtifact>,
-            GROUP => schema::<GroupArtifact>,
-            SUMMARY => schema::<SummaryArtifact>,
-            AGREEMENT => schema::<AgreementArtifact>,
-            "artifact" => artifact.unwrap_or(schema::<Message>),
-            _ => schema::<Message>,
+            CHANNELS => schemas::CHANNELS,
+            SINCE => schemas::CHANGE,
+            GROUP => schemas::GROUP,
+            SUMMARY => schemas::SUMMARY,
+            AGREEMENT => schemas::AGREEMENT,
+            "artifact" => artifact.unwrap_or(schemas::MESSAGES),
+            _ => schemas::MESSAGES,
         };
-        return Some(schema().into_bytes());
+        return Some(schema.as_bytes().to_vec());
     }
     if let Some(shell) = matches.get_one::<clap_complete::Shell>("completions") {
         let mut command = command();

@@ -4,7 +4,6 @@
 //!
 //! ```no_run
 //! # #[derive(clap::Parser)] struct Args { #[command(flatten)] run: pam_cli::RunArgs, #[arg(long)] out: std::path::PathBuf }
-//! # #[derive(schemars::JsonSchema)] struct Model;
 //! use pam_cli::{Output, Verdict};
 //!
 //! fn run(args: &Args) -> anyhow::Result<Verdict> {
@@ -16,7 +15,7 @@
 //! }
 //!
 //! fn main() -> std::process::ExitCode {
-//!     pam_cli::main_with_schema::<Args, Model>(run)
+//!     pam_cli::main_with_schema::<Args>(pam_core::artifact::schemas::MODEL, run)
 //! }
 //! ```
 //!

@@ -2,6 +2,7 @@
 
 use std::io::Write as _;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -28,9 +29,10 @@ impl Format {
 }
 
 /// One line on standard error with `--format json`.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(tag = "level", rename_all = "lowercase")]
-#[schemars(title = "pam-messages/1")]
+#[cfg_attr(feature = "schemas", schemars(title = "pam-messages/1"))]
 pub enum Message {
     /// Worth knowing: what was assumed, found or written.
     Note(Said),
@@ -45,7 +47,8 @@ pub enum Message {
 }
 
 /// Words, and the place that they are about.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 pub struct Said {
     /// The line that a person would read, without its level.
     pub message: String,
@@ -61,14 +64,16 @@ pub struct Said {
 }
 
 /// A table.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 pub struct Drawn {
     /// Its lines.
     pub message: String,
 }
 
 /// How far a piece of work has come.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 pub struct Step {
     /// What is being done.
     pub task: String,

@@ -5,9 +5,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use schemars::JsonSchema;
 
-use crate::about::{self, Schema};
+use crate::about;
 use crate::exit::usage_error;
 use crate::message::Format;
 use crate::{OutputError, Verdict, exit_code, interrupt, nearest};
@@ -20,12 +19,10 @@ pub fn main<Args: Parser>(run: impl FnOnce(&Args) -> anyhow::Result<Verdict>) ->
     program(run, None)
 }
 
-/// Like [`main`](main()), for a program whose artifact is an `Artifact`: `--schema` prints the artifact's JSON
-/// schema and stops. It is accepted without the arguments that are required otherwise.
-pub fn main_with_schema<Args: Parser, Artifact: JsonSchema>(
-    run: impl FnOnce(&Args) -> anyhow::Result<Verdict>,
-) -> ExitCode {
-    program(run, Some(about::schema::<Artifact>))
+/// Like [`main`](main()), for a program whose artifact has the JSON schema `schema`: `--schema` prints that and stops. It is
+/// accepted without the arguments that are required otherwise.
+pub fn main_with_schema<Args: Parser>(schema: &str, run: impl FnOnce(&Args) -> anyhow::Result<Verdict>) -> ExitCode {
+    program(run, Some(schema))
 }
 
 fn print(text: &[u8]) -> Result<(), OutputError> {
@@ -33,7 +30,7 @@ fn print(text: &[u8]) -> Result<(), OutputError> {
     stdout.write_all(text).and_then(|()| stdout.flush()).map_err(|reason| OutputError::from_io("-".as_ref(), reason))
 }
 
-fn program<Args: Parser>(run: impl FnOnce(&Args) -> anyhow::Result<Verdict>, artifact: Option<Schema>) -> ExitCode {
+fn program<Args: Parser>(run: impl FnOnce(&Args) -> anyhow::Result<Verdict>, artifact: Option<&str>) -> ExitCode {
     interrupt::end_on_panic();
     interrupt::start();
     let command = || about::with_options(Args::command(), artifact.is_some());

@@ -28,13 +28,15 @@
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::spelling::{nearest, number, toml_fault, unreadable};
 
 /// Dimensions of a muscle, in SI; see the [module](self) for symbols.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Muscle {
     /// `L₀`, in m.
@@ -147,7 +149,8 @@ impl Kinematics {
 
 /// Dimensions that a fit may free. The strands are missing on purpose: their number, diameter and
 /// modulus act together, so that a fit of the modulus covers them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Dimension {
     /// Rest length; shifts the datum of the length sensor.

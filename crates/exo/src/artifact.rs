@@ -1,6 +1,7 @@
 //! `exo-metrics/1`: how well a lift followed its reference.
 
 use pam_core::artifact::{Input, Tool};
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -14,11 +15,12 @@ use crate::trouble::Trouble;
 pub const SCHEMA: &str = "exo-metrics/1";
 
 /// Errors of a lift and of its trials.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MetricsArtifact {
     /// `exo-metrics/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -39,7 +41,8 @@ pub struct MetricsArtifact {
 }
 
 /// One arm.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ArmMetrics {
     /// Errors.
@@ -53,7 +56,8 @@ pub struct ArmMetrics {
 }
 
 /// A robustness study; of each trial the worse arm counts.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TrialMetrics {
     /// Trials run.
@@ -73,7 +77,8 @@ pub struct TrialMetrics {
 }
 
 /// Quantiles over trials.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Quantiles {
     /// Median.

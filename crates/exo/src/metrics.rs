@@ -7,13 +7,15 @@
 //! The paper prints MAE without the bars, and for ITAE a sum without the step: with `Σ t = 1252.5 s` over 5 s at
 //! 100 Hz its figures are 0.0464 rad s² and so on. Both are given here.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::reference::ReferenceAt;
 
 /// Errors of one signal; units are those of the signal, for ITAE times s² and s.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SignalErrors {
     /// Largest absolute error.
@@ -29,7 +31,8 @@ pub struct SignalErrors {
 }
 
 /// Errors of one arm.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TrackingErrors {
     /// Angle, in rad.

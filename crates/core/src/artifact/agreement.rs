@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -20,11 +21,12 @@ use crate::recording::Repairs;
 pub const SCHEMA: &str = "pam-agreement/1";
 
 /// What is agreed on, and the next question.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct AgreementArtifact {
     /// `pam-agreement/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -51,7 +53,8 @@ pub struct AgreementArtifact {
 }
 
 /// A recording and its shards.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CutRecording {
     /// Its name.
@@ -73,7 +76,8 @@ pub struct CutRecording {
 }
 
 /// A law of friction at standstill, and what it leaves.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct JudgedLaw {
     /// The law and its RMSE.
@@ -83,7 +87,8 @@ pub struct JudgedLaw {
 }
 
 /// How the shards begin under a law.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LawBegins {
     /// The law.
@@ -93,7 +98,8 @@ pub struct LawBegins {
 }
 
 /// With what the direction begins in every shard.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Begins {
     /// By recording and shard.
@@ -103,7 +109,8 @@ pub struct Begins {
 }
 
 /// A law, and whether a late pressure stands beside it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Hypothesis {
     /// Index of the law.
@@ -113,7 +120,8 @@ pub struct Hypothesis {
 }
 
 /// What every shard is asked.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Question {
     /// Samples of every channel.

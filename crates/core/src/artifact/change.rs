@@ -1,5 +1,6 @@
 //! `pam-change/1`: what has changed in a muscle or its rig since a diagnosis.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,11 +11,12 @@ use super::{Input, Tool};
 pub const SCHEMA: &str = "pam-change/1";
 
 /// Later recordings of a muscle beside its model of then.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ChangeArtifact {
     /// `pam-change/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -41,7 +43,8 @@ pub struct ChangeArtifact {
 }
 
 /// Options of a comparison with then.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ChangeConfig {
     /// Most changes that may be named.
@@ -53,7 +56,8 @@ pub struct ChangeConfig {
 }
 
 /// What is to be believed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ChangeVerdict {
     /// The model of then follows the later recordings as it did its own, within its standard errors.
@@ -67,7 +71,8 @@ pub enum ChangeVerdict {
 }
 
 /// What kind of thing has changed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ChangeKind {
     /// Zero or gain of a channel.
@@ -83,7 +88,8 @@ pub enum ChangeKind {
 }
 
 /// A change.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Change {
     /// `force-zero`, `force-gain`, `pressure-zero`, `pressure-gain` or `length-zero`; a base parameter or composite; a
@@ -102,7 +108,8 @@ pub struct Change {
 }
 
 /// A number then and now.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Compared {
     /// Name: of a channel, a base parameter, or a parameter of an effect, as in `stribeck.stribeck_force_n`.
@@ -120,7 +127,8 @@ pub struct Compared {
 }
 
 /// Residuals on the later recordings, root mean square over samples that count, channels smoothed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ChangeFit {
     /// What the model of then left of its own recordings, as recorded, in N.
@@ -138,7 +146,8 @@ pub struct ChangeFit {
 }
 
 /// A candidate, alone.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ChangeCandidate {
     /// Id.

@@ -1,5 +1,6 @@
 //! `pam-comparison/1`: two models beside one another on the same recordings.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,11 +10,12 @@ use super::{Input, Tool};
 pub const SCHEMA: &str = "pam-comparison/1";
 
 /// Two models, a and b, on the same recordings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ComparisonArtifact {
     /// `pam-comparison/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -38,7 +40,8 @@ pub struct ComparisonArtifact {
 }
 
 /// Options of a comparison.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CompareConfig {
     /// Resamples of the bootstrap.
@@ -50,7 +53,8 @@ pub struct CompareConfig {
 }
 
 /// Which model follows the recordings better.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
     /// Model a, beyond chance.
@@ -62,7 +66,8 @@ pub enum Outcome {
 }
 
 /// Two models over the same samples.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Comparison {
     /// Samples that count under both models.
@@ -72,7 +77,8 @@ pub struct Comparison {
 }
 
 /// Errors of two models over a set of samples, and their difference with its uncertainty.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Difference {
     /// Samples.
@@ -94,7 +100,8 @@ pub struct Difference {
 }
 
 /// Two models on one recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ComparedRecording {
     /// Path as given.
@@ -108,7 +115,8 @@ pub struct ComparedRecording {
 }
 
 /// A parameter of two models.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ComparedParameter {
     /// Name.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -15,11 +16,12 @@ use super::{ArtifactError, Input, Tool};
 pub const SCHEMA: &str = "pam-diagnosis/1";
 
 /// A diagnosis with everything that later programs need.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DiagnosisArtifact {
     /// `pam-diagnosis/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -67,7 +69,8 @@ pub struct DiagnosisArtifact {
 }
 
 /// What is to be believed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// Model and recordings agree, but for what noise, the parameters' uncertainty or the limit of what matters allow.
@@ -85,7 +88,8 @@ pub enum Verdict {
 }
 
 /// Options that a diagnosis was run with.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DiagnoseConfig {
     /// Excess over the noise floor, root mean square, below which a mismatch does not matter, in N; none leaves it to
@@ -98,7 +102,8 @@ pub struct DiagnoseConfig {
 }
 
 /// The model as it was given against the recordings, and how far a refit to them moves it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct AsGiven {
     /// Residual on the estimation recordings.
@@ -119,7 +124,8 @@ pub struct AsGiven {
 }
 
 /// Size of a residual.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Residual {
     /// Root mean square over samples that count, in N.
@@ -129,7 +135,8 @@ pub struct Residual {
 }
 
 /// How far a refit moves a free base parameter.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Shift {
     /// Parameter or composite.
@@ -147,7 +154,8 @@ pub struct Shift {
 }
 
 /// An interval of one coordinate in which the residual exceeds the noise floor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Region {
     /// Coordinate.
@@ -167,7 +175,8 @@ pub struct Region {
 }
 
 /// What a residual is laid out over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Coordinate {
     /// Time since the recording began, in s.
@@ -229,7 +238,8 @@ impl Coordinate {
 }
 
 /// An effect that was left out of the model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NamedEffect {
     /// Catalogue id.
@@ -249,7 +259,8 @@ pub struct NamedEffect {
 }
 
 /// Evidence for an effect: base and effects fitted jointly to all blocks but one, judged on that one, in turn.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Evidence {
     /// Log predictive ratio: sum over blocks left out of the fit of `ln(mean square without / mean square with)`.
@@ -267,7 +278,8 @@ pub struct Evidence {
 }
 
 /// Residuals before and after, root mean square over samples whose direction is settled.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DiagnosisFit {
     /// On the recordings that the effects were fitted to.
@@ -277,7 +289,8 @@ pub struct DiagnosisFit {
 }
 
 /// Residuals before and after.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BeforeAfter {
     /// Base model, refitted to the same recordings, in N.
@@ -295,7 +308,8 @@ pub struct BeforeAfter {
 }
 
 /// A base parameter that no such muscle has.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Implausible {
     /// Parameter or composite.
@@ -311,7 +325,8 @@ pub struct Implausible {
 }
 
 /// An effect that was weighed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Candidate {
     /// Catalogue id, or `smooth-static-misfit`, the competitor without a name.
@@ -325,7 +340,8 @@ pub struct Candidate {
 }
 
 /// What recordings can tell apart: how much of each effect's residual would be left by every other one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Isolability {
     /// Catalogue ids, in the order of the matrix.
@@ -337,7 +353,8 @@ pub struct Isolability {
 }
 
 /// A recording that would tell more.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NextExperiment {
     /// Protocol, by the name of the virtual bench.

@@ -1,5 +1,6 @@
 //! Effects beyond eq. 11 in a model: the catalogue's ids with values.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +10,8 @@ use crate::effects::{self, CATALOGUE, Effect, Past, Sentence, Term};
 use crate::spelling::number;
 
 /// An effect beyond eq. 11.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct EffectEntry {
     /// Catalogue id, or `empirical` for a term that has no name.

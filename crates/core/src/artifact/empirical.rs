@@ -1,5 +1,6 @@
 //! Terms without a name in a diagnosis.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +9,8 @@ use super::model::ParameterEntry;
 use crate::effects::Sentence;
 
 /// What models the part of a mismatch that has no name, and what that gains.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Empirical {
     /// The terms, in the order in which they were found; the model has them as effects `empirical`.
@@ -21,7 +23,8 @@ pub struct Empirical {
 }
 
 /// What a model leaves without and with the terms, root mean square.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct EmpiricalGain {
     /// Base, static map and named effects, in N; along held-out recordings the refitted base alone where no effect is named.
@@ -31,7 +34,8 @@ pub struct EmpiricalGain {
 }
 
 /// A term without a name.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct EmpiricalTerm {
     /// What it is, but for its amplitudes.
@@ -56,7 +60,8 @@ pub struct EmpiricalTerm {
 }
 
 /// The curve of a term over what was seen.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct EmpiricalCurve {
     /// Unit of the argument.
@@ -74,7 +79,8 @@ pub struct EmpiricalCurve {
 }
 
 /// How often sentences are chosen where blocks of recording are drawn anew, with repetition.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Stability {
     /// Share of the draws that choose this one, in [0, 1].
@@ -84,7 +90,8 @@ pub struct Stability {
 }
 
 /// Another sentence that draws of blocks choose.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StabilityRival {
     /// What it is.
@@ -96,7 +103,8 @@ pub struct StabilityRival {
 }
 
 /// An effect of the catalogue that comes near a term.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NearestEffect {
     /// Catalogue id.

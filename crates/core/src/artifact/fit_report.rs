@@ -1,10 +1,12 @@
 //! How a fit went, as a model carries it: statistics, the operating range, the search.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Agreement between model and recordings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FitReport {
     /// All estimation recordings together.
@@ -23,7 +25,8 @@ pub struct FitReport {
 }
 
 /// One recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RecordingFit {
     /// Path as given.
@@ -33,7 +36,8 @@ pub struct RecordingFit {
 }
 
 /// Residual, measured less modelled, over the samples whose direction of motion is certain.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FitStatistics {
     /// Root mean square, in N.
@@ -53,7 +57,8 @@ pub struct FitStatistics {
 }
 
 /// What the estimation recordings cover.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
     /// Lowest and highest gauge pressure, in Pa.
@@ -69,7 +74,8 @@ pub struct Domain {
 }
 
 /// How the search went.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SearchReport {
     /// Every swarm, in order of its start.
@@ -81,7 +87,8 @@ pub struct SearchReport {
 }
 
 /// One swarm and what followed it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StartReport {
     /// RMSE after the swarm, in N.
@@ -91,7 +98,8 @@ pub struct StartReport {
 }
 
 /// Weights of the same columns without signs or ranges.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct UnboundedFit {
     /// RMSE on the estimation recordings, in N.
@@ -103,7 +111,8 @@ pub struct UnboundedFit {
 }
 
 /// A parameter that a free weight stands for.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ImpliedParameter {
     /// Name, or a product of names.

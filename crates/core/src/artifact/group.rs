@@ -1,5 +1,6 @@
 //! `pam-group/1`: several muscles of one rig, diagnosed together.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +12,12 @@ use super::{Input, Tool};
 pub const SCHEMA: &str = "pam-group/1";
 
 /// What the rig does to all of its muscles, and what is left for each of them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct GroupArtifact {
     /// `pam-group/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -42,7 +44,8 @@ pub struct GroupArtifact {
 }
 
 /// An effect of the rig.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RigEffect {
     /// Catalogue id.
@@ -66,7 +69,8 @@ pub struct RigEffect {
 }
 
 /// An effect of the rig in one muscle.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct InMuscle {
     /// Name of the muscle.
@@ -85,7 +89,8 @@ pub struct InMuscle {
 }
 
 /// Share of its fitted size with which held-out recordings show an effect: 1 confirms it, 0 denies it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct HeldOutShare {
     /// The share.
@@ -95,7 +100,8 @@ pub struct HeldOutShare {
 }
 
 /// What recordings of one muscle say of an effect of the rig.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Says {
     /// They show it.
@@ -109,7 +115,8 @@ pub enum Says {
 }
 
 /// A muscle of the group.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct GroupMuscle {
     /// Name.
@@ -129,7 +136,8 @@ pub struct GroupMuscle {
 }
 
 /// Root mean square residual, in N; `all` over excluded samples as well.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct GroupResidual {
     /// Of eq. 11, refitted.
@@ -149,7 +157,8 @@ pub struct GroupResidual {
 }
 
 /// An effect of the rig that was weighed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RigCandidate {
     /// Catalogue id.

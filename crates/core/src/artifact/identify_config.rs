@@ -1,12 +1,14 @@
 //! Options of a fit, and what it assumed, as a model carries them.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::direction::Standstill;
 
 /// Options that a fit was run with.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct IdentifyConfig {
     /// Particles of each swarm.
@@ -39,7 +41,8 @@ fn is_false(value: &bool) -> bool {
 }
 
 /// Hypotheses of the base that a user may force.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Assumed {
     /// Law of the bladder.
@@ -54,7 +57,8 @@ pub struct Assumed {
 }
 
 /// How the two coefficients of the bladder are fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum BladderLaw {
     /// Their sum, shared at a fixed ratio.
@@ -64,7 +68,8 @@ pub enum BladderLaw {
 }
 
 /// Which friction of eq. 11 is fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionLaw {
     /// That of the bladder (eq. 9).
@@ -76,7 +81,8 @@ pub enum FrictionLaw {
 }
 
 /// A hypothesis of the base beside another, judged by what the columns of eq. 11 leave.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StandstillFit {
     /// Friction at standstill.
@@ -86,7 +92,8 @@ pub struct StandstillFit {
 }
 
 /// A parameter held at a value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FixedParameter {
     /// Name of the parameter.
@@ -96,7 +103,8 @@ pub struct FixedParameter {
 }
 
 /// What a residual costs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Loss {
     /// Its square.

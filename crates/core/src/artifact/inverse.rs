@@ -13,6 +13,7 @@
 
 use std::path::Path;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,11 +26,12 @@ pub const SCHEMA: &str = "pam-inverse/1";
 pub const MAX_WIDTH: usize = 64;
 
 /// An inverse network with everything that later programs need.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct InverseArtifact {
     /// `pam-inverse/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -62,7 +64,8 @@ pub struct InverseArtifact {
 }
 
 /// How a neuron answers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Activation {
     /// `tanh z`.
@@ -74,7 +77,8 @@ pub enum Activation {
 }
 
 /// How a network is trained.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Descent along the gradient, eqs 16–19 with their misprints corrected.
@@ -84,7 +88,8 @@ pub enum Method {
 }
 
 /// After what plain backpropagation changes the weights.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Update {
     /// Every sample, in an order drawn anew for every epoch; as the paper prints it.
@@ -94,7 +99,8 @@ pub enum Update {
 }
 
 /// Options that a training was run with.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TrainConfig {
     /// How the network is trained.
@@ -131,7 +137,8 @@ pub struct TrainConfig {
 }
 
 /// `scaled = (value - offset) / scale`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ChannelScaling {
     /// `force`, `length`, `direction` or `pressure`.
@@ -145,7 +152,8 @@ pub struct ChannelScaling {
 }
 
 /// Where the network may be asked.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct InverseDomain {
     /// Lowest and highest pressure, in Pa.
@@ -162,7 +170,8 @@ pub struct InverseDomain {
 }
 
 /// Forces that have a pressure at one length.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
     /// Length, in m.
@@ -174,7 +183,8 @@ pub struct Reach {
 }
 
 /// How the training went.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TrainingReport {
     /// Points that the weights were fitted to.
@@ -194,7 +204,8 @@ pub struct TrainingReport {
 }
 
 /// One start.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StartReport {
     /// Epochs run.
@@ -208,7 +219,8 @@ pub struct StartReport {
 }
 
 /// Why a start ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Ended {
     /// The validation error fell below the goal.
@@ -224,7 +236,8 @@ pub enum Ended {
 }
 
 /// Errors on points that the training never saw, drawn evenly where the inverse exists.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ErrorReport {
     /// What the box of pressures and lengths consists of.
@@ -242,7 +255,8 @@ pub struct ErrorReport {
 }
 
 /// Shares of the box of pressures, lengths and directions, in percent; they add up to 100.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Coverage {
     /// Cells counted.
@@ -260,7 +274,8 @@ pub struct Coverage {
 }
 
 /// Size of errors.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ErrorStatistics {
     /// Points.
@@ -278,7 +293,8 @@ pub struct ErrorStatistics {
 }
 
 /// Pressure errors in one region.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RegionErrors {
     /// Coordinate that is cut: `pressure_pa`, `length_m` or `direction`.

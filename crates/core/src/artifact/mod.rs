@@ -16,6 +16,7 @@ mod identify_config;
 pub mod inverse;
 pub mod model;
 pub mod prediction;
+pub mod schemas;
 pub mod summary;
 
 pub use agreement::AgreementArtifact;
@@ -31,6 +32,7 @@ pub use summary::SummaryArtifact;
 
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -40,7 +42,8 @@ use crate::recording::Recording;
 use crate::spelling::{suggesting, unreadable};
 
 /// Program that wrote an artifact.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Tool {
     /// Name of the program.
@@ -50,7 +53,8 @@ pub struct Tool {
 }
 
 /// A file that went into an artifact.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Input {
     /// Path as given on the command line.
@@ -69,7 +73,8 @@ impl Input {
 }
 
 /// What a file served as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum InputRole {
     /// Dimensions of the muscle.

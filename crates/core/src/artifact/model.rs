@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -24,11 +25,12 @@ use crate::spelling::{nearest, number};
 pub const SCHEMA: &str = "pam-model/1";
 
 /// An identified force model with everything that later programs need.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ModelArtifact {
     /// `pam-model/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -75,7 +77,8 @@ pub struct ModelArtifact {
 }
 
 /// A parameter and what is known of it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ParameterEntry {
     /// `k1`, `k2`, `k3`, `c10`, `c01`, `strand_modulus`, `rubber_friction`, `strand_friction`, or a
@@ -92,7 +95,8 @@ pub struct ParameterEntry {
 }
 
 /// How a value came about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ParameterStatus {
     /// Found by the fit, inside its range.
@@ -106,7 +110,8 @@ pub enum ParameterStatus {
 }
 
 /// A combination of parameters that the data determine.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CompositeEntry {
     /// The combination, as a formula of parameter names.
@@ -122,7 +127,8 @@ pub struct CompositeEntry {
 }
 
 /// Correlation between estimates.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Correlation {
     /// What was fitted, in the order of the matrix; a composite counts once.

@@ -1,5 +1,6 @@
 //! `pam-prediction/1`: how well a model follows a recording.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,11 +11,12 @@ use super::{Input, Tool};
 pub const SCHEMA: &str = "pam-prediction/1";
 
 /// A model against one recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PredictionArtifact {
     /// `pam-prediction/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -43,7 +45,8 @@ pub struct PredictionArtifact {
 }
 
 /// Options of a prediction.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PredictConfig {
     /// Limit of the RMSE over samples that count, in N.
@@ -55,7 +58,8 @@ pub struct PredictConfig {
 }
 
 /// Residual, measured less modelled, over a set of samples.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PredictionErrors {
     /// Root mean square, in N.
@@ -76,7 +80,8 @@ pub struct PredictionErrors {
 
 /// Interval around the prediction: `z √(gᵀ C g + r²)` to either side, with the gradient `g` of the force by the base
 /// parameters, their covariance `C` and the residual `r` of the model on recordings of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Band {
     /// Share of samples that it is meant to hold.
@@ -90,7 +95,8 @@ pub struct Band {
 }
 
 /// Where a recording leaves what its model was identified on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Extrapolation {
     /// What the model was identified on.

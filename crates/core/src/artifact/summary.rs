@@ -7,6 +7,7 @@
 
 use std::path::Path;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,11 +22,12 @@ use crate::recording::Repairs;
 pub const SCHEMA: &str = "pam-summary/1";
 
 /// A shard, and its answer to the question of an agreement.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SummaryArtifact {
     /// `pam-summary/1`.
-    #[schemars(extend("const" = SCHEMA))]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA)))]
     pub schema: String,
     /// Program that wrote it.
     pub tool: Tool,
@@ -54,7 +56,8 @@ pub struct SummaryArtifact {
 }
 
 /// Which rows of which recording a shard has.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Shard {
     /// Name of the recording; where it was not cut, the path.
@@ -70,7 +73,8 @@ pub struct Shard {
 }
 
 /// Consecutive rows of a recording, in SI.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Rows {
     /// Index in the recording of the first.
@@ -86,7 +90,8 @@ pub struct Rows {
 }
 
 /// What rows of columns and force condense to: the triangle R of their QR factorization.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Triangle {
     /// Columns beside the force.
@@ -98,7 +103,8 @@ pub struct Triangle {
 }
 
 /// Where the direction ends after some rows.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Ends {
     /// The state that the next row begins with.
@@ -108,7 +114,8 @@ pub struct Ends {
 }
 
 /// One of the stretches that standard errors are judged by, which ends in these rows.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StretchPart {
     /// Number of the stretch within its recording.
@@ -118,7 +125,8 @@ pub struct StretchPart {
 }
 
 /// A stretch that goes on in the next rows: to continue as if there were no border takes no more than this.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Open {
     /// What has been folded so far, in whole blocks.
@@ -128,7 +136,8 @@ pub struct Open {
 }
 
 /// Sums over samples beside a model.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TallySums {
     /// Counted samples.
@@ -158,7 +167,8 @@ pub struct TallySums {
 }
 
 /// What a shard answers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Answer {
     /// Nothing but what lies in it.

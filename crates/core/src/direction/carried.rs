@@ -2,13 +2,15 @@
 
 use std::ops::Range;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::states::Bounds;
 
 /// Between what the state of friction lies at the end of a stretch: -1 after extending, +1 after contracting.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Carried {
     /// Lowest state.

@@ -26,6 +26,7 @@
 use std::io;
 use std::ops::Range;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +48,8 @@ pub use states::WINDOW_S;
 pub const STRETCH_ROWS: usize = 1 << 18;
 
 /// What friction does while the length stands still.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Standstill {
     /// It keeps the sign of the last motion, whatever the pressure does.
@@ -93,7 +95,8 @@ fn is_all(share: &f64) -> bool {
 }
 
 /// How the direction is found.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Thresholds {
     /// By how much the length turns back before the direction flips, in m.

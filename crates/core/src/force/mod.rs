@@ -16,13 +16,15 @@ pub mod gas;
 pub mod rubber_friction;
 pub mod strand_friction;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::muscle::{Kinematics, Muscle};
 
 /// How eq. 11 is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Form {
     /// Rubber resists contraction, strand tension from equilibrium, friction by the motion of the braid.
@@ -43,7 +45,8 @@ impl Form {
 }
 
 /// A parameter of eq. 11 that a fit may find.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Parameter {
     /// `k₁`: gain of the gas term.

@@ -2,6 +2,7 @@
 
 use std::io;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +12,8 @@ use super::stuck::StuckRuns;
 use crate::recording::{CHUNK_ROWS, Chunk, Recording, Samples};
 
 /// How many rows there are, and between what they lie.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Extent {
     /// Rows.

@@ -3,6 +3,7 @@
 use std::io;
 
 use rayon::prelude::*;
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,8 @@ use super::stuck::StuckRuns;
 use crate::recording::{Chunk, Recording, Repairs};
 
 /// What a recording looks like before anything is fitted to it; SI throughout.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RecordingQuality {
     /// Path as given.
@@ -98,7 +100,8 @@ pub(super) const COLUMNS: [Column; 3] = [Chunk::pressure_pa, Chunk::length_m, Ch
 const NAMES: [(&str, &str); 3] = [("pressure", "Pa"), ("length", "m"), ("force", "N")];
 
 /// Fastest changes over 50 ms.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Rates {
     /// Of the length, in m/s.

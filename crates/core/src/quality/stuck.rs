@@ -2,6 +2,7 @@
 
 use std::io;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +14,8 @@ use crate::recording::Recording;
 const STUCK_RUN: usize = 10;
 
 /// Equal values in a row.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Run {
     /// The value, in SI.
@@ -23,7 +25,8 @@ pub struct Run {
 }
 
 /// Runs of equal values at the ends of a channel. The first and the last may go on beyond the rows that were looked at.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StuckRuns {
     /// The first run, once it has ended.

@@ -6,6 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
@@ -22,34 +23,36 @@ use crate::spelling::{nearest, place_in, toml_fault, unreadable};
 pub const SCHEMA: &str = "pam-channels/1";
 
 /// What the columns of a bench's recordings mean, as the file has it (TOML).
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ChannelsFile {
     /// `pam-channels/1`, where it is given.
-    #[schemars(extend("const" = SCHEMA), with = "Option<String>")]
+    #[cfg_attr(feature = "schemas", schemars(extend("const" = SCHEMA), with = "Option<String>"))]
     schema: Option<Spanned<String>>,
     /// Names of the columns, in their order, for recordings without a header; `-` skips one.
-    #[schemars(with = "Option<Vec<String>>")]
+    #[cfg_attr(feature = "schemas", schemars(with = "Option<Vec<String>>"))]
     columns: Option<Spanned<Vec<String>>>,
     /// Time since any origin.
-    #[schemars(with = "Option<Channel>")]
+    #[cfg_attr(feature = "schemas", schemars(with = "Option<Channel>"))]
     time: Option<Spanned<Channel>>,
     /// Gauge pressure in the muscle.
-    #[schemars(with = "Option<Channel>")]
+    #[cfg_attr(feature = "schemas", schemars(with = "Option<Channel>"))]
     pressure: Option<Spanned<Channel>>,
     /// Length, clamp to clamp.
-    #[schemars(with = "Option<Channel>")]
+    #[cfg_attr(feature = "schemas", schemars(with = "Option<Channel>"))]
     length: Option<Spanned<Channel>>,
     /// Tension, positive when the muscle pulls.
-    #[schemars(with = "Option<Channel>")]
+    #[cfg_attr(feature = "schemas", schemars(with = "Option<Channel>"))]
     force: Option<Spanned<Channel>>,
     /// Temperature of the muscle.
-    #[schemars(with = "Option<Channel>")]
+    #[cfg_attr(feature = "schemas", schemars(with = "Option<Channel>"))]
     temperature: Option<Spanned<Channel>>,
 }
 
 /// Where one quantity comes from.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 struct Channel {
     /// Unit of the quantity: s, kPa, bar, mm, N and so on.

@@ -1,5 +1,6 @@
 //! What was repaired or left out while reading, for people and for artifacts.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +10,8 @@ use super::row_fault::RowFault;
 const REMEMBERED: usize = 5;
 
 /// What was repaired or left out while reading.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Repairs {
     /// Rows that were moved in time because the clock gave them the stamp of the row above.
@@ -27,7 +29,8 @@ pub struct Repairs {
 }
 
 /// A row that was dropped.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SkippedRow {
     /// Line of the file, counted from 1.

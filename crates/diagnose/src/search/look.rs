@@ -36,6 +36,37 @@ pub(super) fn form_square(sensors_n: f64, range_n: f64, share: f64) -> f64 {
     (FORM * sensors_n.powi(2)).max((share * range_n).powi(2))
 }
 
+/// What a static map must take up, in N², before a static effect is named in its place.
+#[derive(Debug, Clone, Copy)]
+struct Asked {
+    /// Of any effect: what matters, and what the form of eq. 11 leaves of any muscle.
+    least: f64,
+    /// Of one beside which eq. 11 strains: more than any healthy muscle has.
+    most: f64,
+}
+
+impl Asked {
+    /// Where the force ranges over `range_n`, and no model gets below `floor_square`.
+    fn of(limits: &Limits, floor_square: f64, range_n: f64) -> Self {
+        let full_floor = floor_square + limits.sensor_floor_n.powi(2);
+        let matters = limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
+        let [form, most] = [FORM_SHARE, FORM_AT_MOST].map(|share| form_square(limits.sensor_floor_n, range_n, share));
+        Self { least: matters.max(form), most }
+    }
+
+    /// Whether a map that takes up `map` is enough for an effect; `sees` where that acts through eq. 11, `strained` where eq. 11
+    /// strains beside it.
+    fn is_met(self, map: f64, sees: bool, strained: bool) -> bool {
+        let base_like = if sees { LIKE_THE_BASE * self.least } else { self.least };
+        map > if strained { base_like.max(self.most) } else { base_like }
+    }
+}
+
+/// Whether a static effect that gains `gained` where the map takes up `map`, both in N², stands for it.
+fn stands_for_map(gained: f64, map: f64, log_ratio: f64) -> bool {
+    gained > OF_THE_MAP * map && log_ratio > LEAST_LOG_RATIO
+}
+
 /// A trial, and what was left before it.
 pub(super) struct Tried {
     pub(super) trial: Trial,
@@ -123,30 +154,23 @@ impl Look<'_> {
         let (beside, beside_map) = (self.plain.beside(&formed), self.plain.beside(&formed_map));
         let (bare, with_map) = (again(&beside, best)?, again(&beside_map, best)?);
         let map = bare.held_out.mean_square() - with_map.held_out.mean_square();
-        let full_floor = floor_square + self.limits.sensor_floor_n.powi(2);
-        let matters = self.limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
         let (low_n, high_n) = self.seen.force_n;
-        let [form, most] =
-            [FORM_SHARE, FORM_AT_MOST].map(|share| form_square(self.limits.sensor_floor_n, high_n - low_n, share));
-        let least = matters.max(form);
-        if map < least {
+        let asked = Asked::of(self.limits, floor_square, high_n - low_n);
+        if map < asked.least {
             return None;
         }
         let statics = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static();
         let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &statics);
         let stands = |trial: &&Trial| {
             let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
-            gained > OF_THE_MAP * map && trial.log_ratio > LEAST_LOG_RATIO
+            stands_for_map(gained, map, trial.log_ratio)
         };
         let named: Vec<(bool, Judged)> = trials
             .iter()
             .filter(stands)
             .filter_map(|trial| settle(&beside, &bare, trial))
             .map(|named| (is_strained(&beside, &named, base), named))
-            .filter(|(strained, named)| {
-                let base_like = if sees(named) { LIKE_THE_BASE * least } else { least };
-                map > if *strained { base_like.max(most) } else { base_like }
-            })
+            .filter(|(strained, named)| asked.is_met(map, sees(named), *strained))
             .collect();
         let at_ease = named.iter().find(|(strained, _)| !strained).or(named.first());
         again(self.mapped, &at_ease?.1)

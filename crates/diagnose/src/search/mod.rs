@@ -294,6 +294,66 @@ mod tests {
         assert_eq!(names(&given), ["pressure-lag"]);
     }
 
+    /// What a search finds in `given`, whose sensors leave 0.3 N, if it may take so many effects.
+    fn found(given: &Given, max_effects: usize) -> Found {
+        let limits = Limits::of_test(max_effects, 0.3);
+        let setting = Setting { floor_square: 0.09, ..given.setting() };
+        search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search")
+    }
+
+    #[test]
+    fn no_more_is_taken_than_may_be() {
+        let mut given =
+            Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[]), ("rubber-hysteresis", &[2e-3], &[20.0])]);
+        given.disturb();
+        assert_eq!(found(&given, 1).best.state.guesses.len(), 1);
+        let none = found(&given, 0);
+        assert!(none.best.state.guesses.is_empty() && none.taken.is_empty());
+        assert!(none.first.is_empty(), "nobody looked");
+    }
+
+    #[test]
+    fn the_first_look_has_every_effect_once_and_each_alone() {
+        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+        given.disturb();
+        let found = found(&given, 3);
+        let mut first: Vec<&str> = found.first.iter().map(|trial| trial.guess.id()).collect();
+        let mut every: Vec<&str> = given.setting().effects.iter().map(|effect| effect.page().id).collect();
+        first.sort_unstable();
+        every.sort_unstable();
+        assert_eq!(first, every);
+        // Beside itself, a lag would gain nothing.
+        let lag = found.first.iter().find(|trial| trial.guess.id() == "pressure-lag").expect("a trial");
+        assert!(lag.log_ratio > 5.0, "{}", lag.log_ratio);
+        assert!(found.of_the_map.is_empty() && *found.before() == found.whole.held_out);
+        let (without, with) = (found.taken[0].without.mean_square(), found.taken[0].with.mean_square());
+        assert!(with < 0.1 * without, "{without} {with}");
+    }
+
+    #[test]
+    fn a_threshold_is_named_beside_the_map_that_cannot_bend_so_sharply() {
+        let mut given = Given::of(&PROTOCOLS, &[("threshold-pressure", &[6e4], &[])]);
+        given.disturb();
+        let found = found(&given, 3);
+        let ids: Vec<&str> = found.best.state.guesses.iter().map(CandidateEffect::id).collect();
+        assert_eq!(ids, ["threshold-pressure"]);
+        assert!(found.of_the_map.is_empty());
+        assert!(*found.before() == found.whole.held_out, "what it is named beside is in before it");
+        let (without, with) = (found.taken[0].without.mean_square(), found.taken[0].with.mean_square());
+        assert!(with < 0.1 * without, "{without} {with}");
+    }
+
+    #[test]
+    fn what_the_form_of_a_muscle_leaves_is_a_share_of_the_range_of_the_force() {
+        let given = Given::of(&PROTOCOLS, &[]);
+        let forces_n = || given.track.instants.iter().zip(&given.track.counted).filter(|(_, counted)| **counted);
+        let highest = forces_n().map(|(at, _)| at.force_n).fold(f64::NEG_INFINITY, f64::max);
+        let lowest = forces_n().map(|(at, _)| at.force_n).fold(f64::INFINITY, f64::min);
+        let expected = (0.0135 * (highest - lowest)).powi(2);
+        let form_square = found(&given, 0).form_square;
+        assert!((form_square - expected).abs() < 1e-9 * expected, "{form_square} {expected}");
+    }
+
     #[test]
     fn rubber_that_stays_soft_from_one_recording_to_the_next_is_named_as_going_on() {
         let mut given = Given::of(&PROTOCOLS, &[]);

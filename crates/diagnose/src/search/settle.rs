@@ -47,6 +47,11 @@ pub(super) fn polished(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
 /// Share of the mean square by which a shape must lower it to differ from zero.
 const WORTH_A_SHAPE: f64 = 0.01;
 
+/// Whether a shape says nothing without which the share `lost` of the mean square over so many independent rows is lost.
+fn is_nothing(rows: f64, lost: f64) -> bool {
+    rows * lost < 1.0 || lost < WORTH_A_SHAPE
+}
+
 /// What was taken, with those of its shapes at zero that the data do not tell from it: they have followed the noise, and
 /// other recordings would show it. A length that is held says nothing of its delay.
 pub(super) fn at_rest(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
@@ -69,7 +74,7 @@ pub(super) fn at_rest(setting: &Setting<'_>, best: Judged) -> Option<Judged> {
             let Some(state) = setting.fit_near(guesses, state) else { continue };
             // All that rest together.
             let lost = state.fit.mean_square / lowest - 1.0;
-            if rows * lost < 1.0 || lost < WORTH_A_SHAPE {
+            if is_nothing(rows, lost) {
                 rested = Some(state);
             }
         }
@@ -143,6 +148,11 @@ pub(super) fn without(
     Some((rest, rivals))
 }
 
+/// Whether a rival of so much evidence is better than what was taken, whose own is `own`: as good is not better.
+fn is_better(rival: f64, own: f64) -> bool {
+    rival > own + 0.02 * own.abs() + 0.1
+}
+
 /// Looks at every effect that was taken once more: another one in its place, or none.
 pub(super) fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &Shapes) -> Judged {
     let mut best = best;
@@ -150,8 +160,7 @@ pub(super) fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, prom
         let Some((rest, rivals)) = without(setting, &best, index, seen, promising) else { continue };
         let Some(rival) = rivals.first() else { continue };
         let own = rest.held_out.log_ratio(&best.held_out);
-        // As good is not better.
-        if rival.log_ratio > own + 0.02 * own.abs() + 0.1
+        if is_better(rival.log_ratio, own)
             && rival.guess.id() != best.state.guesses[index].id()
             && let Some(next) = settle(setting, &rest, rival)
         {
@@ -172,6 +181,34 @@ mod tests {
         let setting = given.setting();
         let state = setting.fit(vec![given.guess(id, shape)], &given.start, &given.model).expect("a fit");
         judged(&setting, state).expect("a fit of every fold")
+    }
+
+    #[test]
+    fn a_rival_is_better_by_a_fiftieth_and_a_tenth_whatever_the_sign_of_the_evidence() {
+        assert!(is_better(10.31, 10.0) && !is_better(10.29, 10.0));
+        assert!(is_better(-9.69, -10.0) && !is_better(-9.71, -10.0));
+        assert!(is_better(0.11, 0.0) && !is_better(0.09, 0.0));
+    }
+
+    #[test]
+    fn a_shape_says_nothing_where_it_loses_less_than_noise_would_or_less_than_a_hundredth() {
+        // A fiftieth of fifty rows is what noise loses.
+        assert!(is_nothing(49.0, 0.02) && !is_nothing(51.0, 0.02));
+        assert!(is_nothing(1e6, 0.0099) && !is_nothing(1e6, 0.0101));
+    }
+
+    #[test]
+    fn what_was_taken_gives_way_to_what_explains_more_and_to_nothing_else() {
+        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+        given.disturb();
+        let (setting, seen) = (given.setting(), Seen::of(given.track.instants.iter()));
+        let promising = Shapes::from([("pressure-lag", vec![0.15]), ("channel-delay", vec![0.12, 0.0])]);
+        let after = |id: &str, shape: &[f64]| {
+            let looked = second_look(&setting, of(&given, id, shape), &seen, &promising);
+            looked.state.guesses.iter().map(CandidateEffect::id).collect::<Vec<_>>()
+        };
+        assert_eq!(after("channel-delay", &[0.12, 0.0]), ["pressure-lag"]);
+        assert_eq!(after("pressure-lag", &[0.15]), ["pressure-lag"]);
     }
 
     #[test]

@@ -113,6 +113,24 @@ fn where_most_is_left_every_name_goes_that_is_not_confirmed() {
 }
 
 #[test]
+fn what_was_found_of_the_names_that_stay_stays_with_them() {
+    let guesses = || vec![guess("pressure-lag", &[0.15]), guess("viscous-damping", &[])];
+    // Names that remain, and what was left without each of them, once the one at `index` is let go of.
+    let rest = |index: usize| {
+        Desk::new().ask(guesses(), |setting, mut found, _| {
+            let held = |square: f64| HeldOut { blocks: vec![square], counts: vec![1.0], floor_square: 0.0 };
+            let taken =
+                |square| Taken { without: held(square), with: held(1.0), rivals: Vec::new(), is_confirmed: false };
+            found.taken = vec![taken(5.0), taken(7.0)];
+            assert!(found.let_go(setting, index));
+            (ids(&found), found.taken.iter().map(|taken| taken.without.mean_square()).collect::<Vec<_>>())
+        })
+    };
+    assert_eq!(rest(0), (vec!["viscous-damping"], vec![7.0]));
+    assert_eq!(rest(1), (vec!["pressure-lag"], vec![5.0]));
+}
+
+#[test]
 fn a_right_name_stands_for_itself() {
     let left = Desk::new().ask(vec![guess("pressure-lag", &[0.15, 0.0])], |setting, found, _| {
         let whole = found.whole.held_out.mean_square();

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use pam_core::spelling::toml_fault;
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +11,8 @@ use super::LiftPlan;
 use crate::error::ConfigError;
 
 /// A configuration file; every key is explained in `configs/lift.toml`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LiftConfig {
     pub(super) reference: ReferenceToml,
@@ -24,7 +26,8 @@ pub struct LiftConfig {
     pub(super) trials: TrialsToml,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct ReferenceToml {
     pub(super) from_rad: f64,
@@ -35,7 +38,8 @@ pub(super) struct ReferenceToml {
     pub(super) settle_s: f64,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct ArmToml {
     pub(super) upper_m: f64,
@@ -47,7 +51,8 @@ pub(super) struct ArmToml {
     pub(super) mounted_length_mm: Option<f64>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct LoadToml {
     pub(super) mass_kg: f64,
@@ -55,7 +60,8 @@ pub(super) struct LoadToml {
     pub(super) true_mass_kg: Option<f64>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct PlantToml {
     pub(super) step_ms: f64,
@@ -66,14 +72,16 @@ pub(super) struct PlantToml {
     pub(super) damping_n_m_s: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum ValveKindToml {
     Proportional,
     OnOff,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct ValveToml {
     pub(super) kind: ValveKindToml,
@@ -88,7 +96,8 @@ pub(super) struct ValveToml {
     pub(super) shortest_pulse_ms: f64,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct SensorsToml {
     pub(super) angle_noise_mrad: f64,
@@ -97,14 +106,16 @@ pub(super) struct SensorsToml {
     pub(super) pressure_step_kpa: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum LengthToml {
     Measured,
     Reference,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct ControllerToml {
     pub(super) period_ms: f64,
@@ -132,13 +143,15 @@ fn on() -> bool {
     true
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct LimitsToml {
     pub(super) diverged_rad: f64,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct TrialsToml {
     pub(super) payload_percent: f64,

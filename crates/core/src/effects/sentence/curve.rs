@@ -8,6 +8,7 @@
 //! | `monotone`   | `Σ a_i clamp((x - k_i) / (k_{i+1} - k_i), 0, 1)`, all `a_i` of one sign     | one a step        |
 //! | `spline`     | cubic Hermite through `a_i` at `k_i`, slope at `k_i` that from `k_{i-1}` to `k_{i+1}` | one a knot |
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +16,8 @@ use serde::{Deserialize, Serialize};
 pub const MOST_KNOTS: usize = 40;
 
 /// How a sentence answers its argument; see the [module](self) for the equations.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Curve {
     /// In proportion.

@@ -14,6 +14,7 @@
 //!
 //! The force is that of the model: the measured one holds what is to be explained.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +24,8 @@ use crate::artifact::diagnosis::Coordinate;
 use crate::effects::{Base, Moment};
 
 /// What drives a sentence; see the [module](self) for values and units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Driver {
     /// Gauge pressure, in Pa.

@@ -30,13 +30,15 @@ pub use own::{EMPIRICAL, own};
 pub use recall::Recall;
 pub use scale::Scale;
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Base, Moment};
 
 /// A force as a sentence of the grammar, but for its amplitudes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Sentence {
     /// What drives it.

@@ -14,6 +14,7 @@
 //! At the first moment of a recording a memory is settled. A gap is crossed: what fades with time has gone on, what slides has
 //! come straight.
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +22,8 @@ use super::Driver;
 use crate::effects::{Base, Moment};
 
 /// What a sentence remembers of its driver; see the [module](self) for the equations.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Recall {
     /// Nothing.

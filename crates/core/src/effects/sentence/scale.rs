@@ -13,13 +13,15 @@
 //! | `slope-over-pressure` | `∂F/∂p` of eq. 11: the curve is an error of the pressure, in Pa          | N/Pa |
 //! | `slope-over-length`   | `∂F/∂L` of eq. 11: the curve is an error of the length, in m            | N/m  |
 
+#[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::effects::{Base, Moment};
 
 /// What a sentence is in proportion to; see the [module](self) for the factors.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Scale {
     /// Nothing.

@@ -74,6 +74,42 @@ fn what_a_map_takes_up_in_any_muscle_is_of_the_sensors_or_of_the_range_of_the_fo
 }
 
 #[test]
+fn a_map_is_asked_for_what_matters_and_for_what_no_healthy_muscle_has() {
+    // Sensors of 0.3 N leave 25 times 0.09 N² in any muscle, a range of 1000 N 4.5² N², and at most 13.5² N².
+    let asked = |limits: &Limits, floor_square, range_n| {
+        let Asked { least, most } = Asked::of(limits, floor_square, range_n);
+        (least, most)
+    };
+    let near = |(least, most): (f64, f64), expected: (f64, f64)| {
+        assert!((least - expected.0).abs() < 1e-9 && (most - expected.1).abs() < 1e-9, "{least} {most}");
+    };
+    let limits = Limits::of_test(3, 0.3);
+    near(asked(&limits, 0.02, 1000.0), (20.25, 182.25));
+    near(asked(&limits, 0.02, 10.0), (2.25, 2.25));
+    near(asked(&limits, 30.0, 1000.0), (30.09, 182.25));
+    near(asked(&Limits { matters_above_n: Some(6.0), ..limits }, 40.0, 1000.0), (36.0, 182.25));
+}
+
+#[test]
+fn what_acts_through_the_base_or_strains_it_needs_more_of_a_map() {
+    let asked = Asked { least: 20.0, most: 180.0 };
+    // Above what is asked of an effect, and below.
+    for (sees, strained, limit) in
+        [(false, false, 20.0), (true, false, 40.0), (false, true, 180.0), (true, true, 180.0)]
+    {
+        assert!(asked.is_met(limit + 0.1, sees, strained) && !asked.is_met(limit - 0.1, sees, strained), "{limit}");
+    }
+    let quiet = Asked { least: 120.0, most: 180.0 };
+    assert!(quiet.is_met(240.1, true, true) && !quiet.is_met(239.9, true, true), "whichever is more");
+}
+
+#[test]
+fn an_effect_stands_for_a_map_where_it_gains_nearly_all_of_it_with_evidence() {
+    assert!(stands_for_map(93.1, 100.0, 1.6));
+    assert!(!stands_for_map(92.9, 100.0, 9.0) && !stands_for_map(99.0, 100.0, 1.5));
+}
+
+#[test]
 fn only_trials_that_come_near_the_best_promise_anything() {
     let look = [tried("pressure-lag", 10.0), tried("channel-delay", 2.0), tried("force-drift", 1.5)];
     let promising: Vec<&str> = promise(&look).map(|(id, _)| id).collect();
