@@ -238,8 +238,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     given.beside_effects(&question, &track, &found, !rig.is_empty());
     let space = &question.space;
     observer(steps - 1, steps);
-    let verdict = verdict(&found, &sizes, knocks.is_some());
-    let discovery = discover::discover(&setting, &found, &sizes, verdict, against);
+    let (verdict, discovery) =
+        discover::beside_names(&setting, &mut found, &mut sizes, &question.limits, knocks.is_some(), against);
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
     let carried = match &discovery {
         Some(_) => None,

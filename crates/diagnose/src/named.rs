@@ -137,6 +137,8 @@ pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
                 "held-out recordings deny it".to_owned()
             } else if found.stand_ins.contains(&id) {
                 "gains something, and leaves far more than it explains".to_owned()
+            } else if found.replaced.contains(&id) {
+                "an empirical term takes its place".to_owned()
             } else if explains < 0.02 {
                 "explains nothing".to_owned()
             } else if taken.is_empty() {

@@ -8,7 +8,7 @@
 //!
 //! In reading order: [`discovery`] goes on as long as something gains; [`lexicon`] is what sentences are made of, [`field`]
 //! judges one, [`screen`] finds the best, [`joined`] fits it with everything else, [`held_error`](crate::held_error) asks what
-//! was held out, [`bends`] whether the term is another form of what was named, [`stability`] whether other draws of blocks would
+//! was held out, [`replaced`] whether it takes the place of a name, [`bends`] whether the term is another form of what was named, [`stability`] whether other draws of blocks would
 //! choose it, [`written`], [`curve`], [`nearest`] and [`said`] are what a person reads of it.
 
 mod bends;
@@ -18,10 +18,12 @@ mod field;
 mod joined;
 mod lexicon;
 mod nearest;
+mod replaced;
 mod said;
 mod screen;
 mod stability;
 mod written;
 
-pub(crate) use discovery::{Discovery, HeldAgainst, discover};
+pub(crate) use discovery::{Discovery, HeldAgainst};
+pub(crate) use replaced::beside_names;
 pub(crate) use written::statement;

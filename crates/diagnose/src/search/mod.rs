@@ -89,6 +89,8 @@ pub struct Found {
     pub form_square: f64,
     /// Ids of what was taken and let go of again, as more is left than it explains.
     pub stand_ins: Vec<&'static str>,
+    /// Ids of what was taken and let go of again, as a term without a name takes its place.
+    pub replaced: Vec<&'static str>,
     /// Ids of static effects that stand for the static map.
     pub of_the_map: Vec<&'static str>,
     /// Ids of what was taken and let go of again, as recordings that nothing was fitted to do not show it.
@@ -245,6 +247,7 @@ pub fn search(
         nuisance,
         form_square: form_square(limits.sensor_floor_n, seen.force_n.1 - seen.force_n.0, FORM_AT_MOST),
         stand_ins: Vec::new(),
+        replaced: Vec::new(),
         of_the_map: parsimonious,
         denied: Vec::new(),
     })
