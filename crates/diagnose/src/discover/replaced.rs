@@ -58,3 +58,33 @@ fn size_n(setting: &Setting<'_>, state: &State, term: &Term) -> f64 {
     let squares: f64 = with_n.iter().zip(&without_n).map(|(with_n, without_n)| (with_n - without_n).powi(2)).sum();
     (squares / with_n.len().max(1) as f64).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rehearsal::tests::Given;
+    use crate::search::search;
+
+    #[test]
+    fn a_name_of_which_a_term_leaves_nothing_is_replaced_unless_hold_outs_show_it() {
+        let mut given = Given::of(&["isobaric-triangles", "multisine"], &[("rubber-hysteresis", &[2e-3], &[20.0])]);
+        given.disturb();
+        let limits = Limits::of_test(1, 0.3);
+        let plain = Setting { floor_square: 0.09, ..given.setting() };
+        let mut found = search(&plain, &given.start, &given.model, &limits, &|| {}).expect("a search");
+        assert_eq!(found.best.state.guesses.len(), 1);
+        let nuisance = found.nuisance.clone();
+        let setting = plain.beside(&nuisance);
+        let beside = |share: f64| {
+            let mut state = found.best.state.clone();
+            state.fit.amplitudes.iter_mut().for_each(|amplitude| *amplitude *= share);
+            state
+        };
+        let (nothing, little, some) = (beside(0.0), beside(0.08), beside(0.12));
+        assert_eq!(replaced(&setting, &found, &nothing), Some(0));
+        assert_eq!(replaced(&setting, &found, &little), Some(0));
+        assert_eq!(replaced(&setting, &found, &some), None);
+        found.taken[0].is_confirmed = true;
+        assert_eq!(replaced(&setting, &found, &nothing), None);
+    }
+}
