@@ -307,7 +307,7 @@ mod tests {
     #[test]
     fn no_more_is_taken_than_may_be() {
         let mut given =
-            Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[]), ("rubber-hysteresis", &[2e-3], &[20.0])]);
+            Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[]), ("rubber-hysteresis", &[2e-3], &[20.0])]);
         given.disturb();
         assert_eq!(found(&given, 1).best.state.guesses.len(), 1);
         let none = found(&given, 0);
@@ -317,7 +317,7 @@ mod tests {
 
     #[test]
     fn the_first_look_has_every_effect_once_and_each_alone() {
-        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
         given.disturb();
         let found = found(&given, 3);
         let mut first: Vec<&str> = found.first.iter().map(|trial| trial.guess.id()).collect();

@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn what_was_taken_gives_way_to_what_explains_more_and_to_nothing_else() {
-        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15], &[])]);
+        let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
         given.disturb();
         let (setting, seen) = (given.setting(), Seen::of(given.track.instants.iter()));
         let promising = Shapes::from([("pressure-lag", vec![0.15]), ("channel-delay", vec![0.12, 0.0])]);
@@ -208,7 +208,7 @@ mod tests {
             looked.state.guesses.iter().map(CandidateEffect::id).collect::<Vec<_>>()
         };
         assert_eq!(after("channel-delay", &[0.12, 0.0]), ["pressure-lag"]);
-        assert_eq!(after("pressure-lag", &[0.15]), ["pressure-lag"]);
+        assert_eq!(after("pressure-lag", &[0.15, 0.0]), ["pressure-lag"]);
     }
 
     #[test]

@@ -114,7 +114,7 @@ fn where_most_is_left_every_name_goes_that_is_not_confirmed() {
 
 #[test]
 fn what_was_found_of_the_names_that_stay_stays_with_them() {
-    let guesses = || vec![guess("pressure-lag", &[0.15]), guess("viscous-damping", &[])];
+    let guesses = || vec![guess("pressure-lag", &[0.15, 0.0]), guess("viscous-damping", &[])];
     // Names that remain, and what was left without each of them, once the one at `index` is let go of.
     let rest = |index: usize| {
         Desk::new().ask(guesses(), |setting, mut found, _| {
