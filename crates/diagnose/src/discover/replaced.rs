@@ -7,8 +7,8 @@ use pam_core::effects::{AugmentedModel, Kind, Term};
 use super::discovery::{Discovery, HeldAgainst, discover};
 use crate::search::{Found, Limits};
 use crate::state::{Setting, State};
-use crate::veto::force_n;
 use crate::verdict::{Sizes, verdict};
+use crate::veto::force_n;
 
 /// Share of its force, root mean square, below which nothing is left of a name. Of 124 cases that this was found by, terms left four
 /// names that held-out recordings did not show 0 to 6 % of it, all wrong, and every other name 7 % (confirmed) or more.
@@ -27,7 +27,10 @@ pub(crate) fn beside_names(
     loop {
         let said = verdict(found, sizes, knocks);
         let discovery = discover(setting, found, sizes, said, held);
-        let replaced = discovery.as_ref().filter(|_| !knocks).and_then(|discovery| replaced(setting, found, &discovery.best.state));
+        let replaced = discovery
+            .as_ref()
+            .filter(|_| !knocks)
+            .and_then(|discovery| replaced(setting, found, &discovery.best.state));
         let Some(index) = replaced else { return (said, discovery) };
         let id = found.best.state.guesses[index].id();
         if !found.let_go(setting, index) {

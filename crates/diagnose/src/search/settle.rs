@@ -202,7 +202,7 @@ mod tests {
         let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
         given.disturb();
         let (setting, seen) = (given.setting(), Seen::of(given.track.instants.iter()));
-        let promising = Shapes::from([("pressure-lag", vec![0.15]), ("channel-delay", vec![0.12, 0.0])]);
+        let promising = Shapes::from([("pressure-lag", vec![0.15, 0.0]), ("channel-delay", vec![0.12, 0.0])]);
         let after = |id: &str, shape: &[f64]| {
             let looked = second_look(&setting, of(&given, id, shape), &seen, &promising);
             looked.state.guesses.iter().map(CandidateEffect::id).collect::<Vec<_>>()
