@@ -235,12 +235,13 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
             .unwrap_or_else(Left::endless)
     };
     let against = held.as_ref().map(|_| discover::HeldAgainst { left: &held_left, given: &as_given });
-    given.beside_effects(&question, &track, &found, !rig.is_empty());
     let space = &question.space;
     observer(steps - 1, steps);
     let (verdict, discovery) =
         discover::beside_names(&setting, &mut found, &mut sizes, &question.limits, knocks.is_some(), against);
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
+    // Beside the names that stay.
+    given.beside_effects(&question, &track, &found, !rig.is_empty());
     let carried = match &discovery {
         Some(_) => None,
         None => carried::leaves_least(&setting, &found, held.as_ref()),

@@ -146,7 +146,8 @@ fn forces_n(model: &AugmentedModel, instants: &[Instant]) -> Vec<f64> {
         .collect()
 }
 
-fn rms(left: &[f64], right: &[f64]) -> f64 {
+/// Root mean square of the differences of two forces, in their unit.
+pub(crate) fn rms(left: &[f64], right: &[f64]) -> f64 {
     let squares: f64 = left.iter().zip(right).map(|(left, right)| (left - right).powi(2)).sum();
     (squares / left.len().max(1) as f64).sqrt()
 }
