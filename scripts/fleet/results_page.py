@@ -11,15 +11,18 @@ def page(results):
             "Processor time of a whole run (identify, predict, diagnose with its page, train an inverse, the fleet's report) and of the "
             "programs themselves within it, as the shell that starts them counts it: other work on the machine counts for both. "
             "The engine's share is what a run takes beyond its programs. The same muscles: the programs' time for those of the first ten "
-            "that are in all of these fleets with nothing concealed or broken. Without an engine: the same programs, one after another, "
+            "that are in all of these fleets with nothing concealed or broken. Where a program was done anew, the last time is the cost of its "
+            "muscle; the engine's share is of all of them. Without an engine: the same programs, one after another, "
             "for muscles drawn at random, over what they took in the run. A second run, where nothing has changed, does nothing but look.", "",
             "| muscles | rows of a recording | programs, per muscle | the same muscles | engine, per muscle | engine over work | without an engine | on the clock | nothing changed, on the clock |",
             "|---:|---:|---:|---:|---:|---:|---:|---:|---:|",
         ]
-        # An earlier version compared the engine with programs that had run at another time.
-        within = [one for one in fleets if "first_ten_s" in one]
-        lines += [cost(one, shared(within)) for one in within]
-        if any(one["of"] != one["muscles"] for one in within):
+        lines += [cost(one, shared(fleets)) for one in fleets]
+        for one in fleets:
+            if one["done_anew"]:
+                lines += ["", f"Of {one['muscles']} muscles, {one['done_anew']} were done more than once: a run was broken off, or "
+                          "programs had changed since."]
+        if any(one["of"] != one["muscles"] for one in fleets):
             lines += ["", "Where fewer muscles are given than a fleet has, its run was ended before it was through: figures are of what was finished."]
         lines += [
             "", "## What is found", "",
@@ -30,9 +33,6 @@ def page(results):
         for one in fleets:
             lines.append("| " + " | ".join(str(one[key]) for key in (
                 "muscles", "concealed", "found", "right_name", "sound", "false_alarms", "broken", "refused_by_name")) + " |")
-        earlier = [str(one["muscles"]) for one in fleets if "first_ten_s" not in one]
-        if earlier:
-            lines += ["", f"Of {', '.join(earlier)} muscles: as an earlier version found them, to which a residual that few samples leave was a reason, too."]
         for one in fleets:
             for title, key in (("Missed", "missed"), ("False alarms", "alarms"), ("Sound, and refused", "sound_refused"),
                                ("Broken, and not refused", "not_refused")):
@@ -84,11 +84,11 @@ def shared(fleets):
 
 def cost(one, shared):
     """Row of a fleet in the table of costs."""
-    n, engine_s = one["muscles"], one["engine_s"] - one["work_s"]
+    n, engine_s = one["muscles"], one["engine_s"] - one["all_work_s"]
     of = f" of {one['of']}" if one["of"] != n else ""
     same = f"{sum(one['first_ten_s'][name] for name in shared) / len(shared):.2f} s" if shared else "-"
     again = f"{one['again_clock_s']:.1f} s" if "again_clock_s" in one else "-"
-    return (f"| {n}{of} | {one['rows']} | {one['work_s'] / n:.2f} s | {same} | {engine_s / n:.3f} s | {100 * engine_s / one['work_s']:.0f} % "
+    return (f"| {n}{of} | {one['rows']} | {one['work_s'] / n:.2f} s | {same} | {engine_s / (n + one['done_anew']):.3f} s | {100 * engine_s / one['all_work_s']:.0f} % "
             f"| {100 * one['plain_s'] / one['plain_work_s']:.0f} % of {one['plain']} | {one['clock_s']:.0f} s | {again} |")
 
 
