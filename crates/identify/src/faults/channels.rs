@@ -36,9 +36,19 @@ impl Look {
         }
         Ok(look)
     }
-}
 
-impl Look {
+    /// Of samples that are at hand.
+    #[cfg(test)]
+    pub(super) fn of(rows: impl Iterator<Item = (f64, f64, f64)>) -> Self {
+        let mut look = Self { pressure_pa: Vec::new(), length_m: Vec::new(), force_n: Vec::new() };
+        for (pressure_pa, length_m, force_n) in rows {
+            look.pressure_pa.push(pressure_pa);
+            look.length_m.push(length_m);
+            look.force_n.push(force_n);
+        }
+        look
+    }
+
     /// Pressure, length and force of each sample.
     pub(super) fn rows(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         let forces = self.pressure_pa.iter().zip(&self.length_m).zip(&self.force_n);

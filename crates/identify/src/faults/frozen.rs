@@ -2,13 +2,8 @@
 //!
 //! A channel that flickers does not show one value for long. Where it does, at neither end of its range (that is a sensor
 //! out of range, whose samples are not counted), it froze, or it rests: a valve that is shut, steps coarser than the noise and a
-//! slow filter make the same run of equal values. The other two channels tell. A smooth map of them,
-//!
-//! ```text
-//! F ≈ c₀ + c₁ p + c₂ p x + c₃ p x² + c₄ x + c₅ x²,   x from the shortest length, -1, to the longest, 1
-//! ```
-//!
-//! is fitted to the rest of the recording. What it leaves of the force wanders as friction and misfit make it, and wanders much
+//! slow filter make the same run of equal values. The other two channels tell. A [smooth map](super::smooth_map) of them is
+//! fitted to the rest of the recording. What it leaves of the force wanders as friction and misfit make it, and wanders much
 //! further along a channel that froze while the muscle went on. A run along which nothing moves is harmless, whatever made it.
 //! A force that stands at the low end of its range is slack, or a load cell whose plug came off: the map says whether the muscle
 //! should have pulled there.
@@ -16,10 +11,10 @@
 use std::io;
 use std::ops::Range;
 
-use nalgebra::{SMatrix, SVector};
 use pam_core::recording::{Chunk, Recording};
 
 use super::Fault;
+use super::smooth_map::{SmoothMap, Sums};
 
 /// Rows and time that a run of one value must last.
 const ROWS: usize = 50;
@@ -161,61 +156,24 @@ pub fn find(recording: &Recording) -> io::Result<Option<Fault>> {
     Ok(None)
 }
 
-/// Terms of the smooth map.
-const N_TERMS: usize = 6;
-
-/// The smooth map, and the channels in sizes of about one.
-#[derive(Debug)]
-struct Map {
-    highest_pa: f64,
-    length_m: [f64; 2],
-    weights: SVector<f64, N_TERMS>,
-}
-
-impl Map {
-    fn terms(&self, pressure_pa: f64, length_m: f64) -> SVector<f64, N_TERMS> {
-        let (p, x) = (pressure_pa / self.highest_pa, (length_m - self.length_m[0]) / self.length_m[1]);
-        SVector::from([1.0, p, p * x, p * x * x, x, x * x])
+/// The smooth map of every so-many-th row of `recording` outside `run`; none where nothing varies.
+fn map_beside(recording: &Recording, run: &Range<usize>, stride: usize) -> io::Result<Option<SmoothMap>> {
+    let (mut highest_pa, mut shortest_m, mut longest_m) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
+    for chunk in recording.samples.chunks() {
+        let chunk = chunk?;
+        highest_pa = chunk.pressure_pa().iter().copied().fold(highest_pa, f64::max);
+        shortest_m = chunk.length_m().iter().copied().fold(shortest_m, f64::min);
+        longest_m = chunk.length_m().iter().copied().fold(longest_m, f64::max);
     }
-
-    /// Fitted to every so-many-th row outside `run`; none where nothing varies.
-    fn of(recording: &Recording, run: &Range<usize>, stride: usize) -> io::Result<Option<Self>> {
-        let (mut highest_pa, mut shortest_m, mut longest_m) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
-        for chunk in recording.samples.chunks() {
-            let chunk = chunk?;
-            highest_pa = chunk.pressure_pa().iter().copied().fold(highest_pa, f64::max);
-            shortest_m = chunk.length_m().iter().copied().fold(shortest_m, f64::min);
-            longest_m = chunk.length_m().iter().copied().fold(longest_m, f64::max);
+    let mut sums = Sums::new(highest_pa, [shortest_m, longest_m]);
+    for chunk in recording.samples.chunks() {
+        let chunk = chunk?;
+        for row in chunk.rows().filter(|row| row.is_multiple_of(stride) && !run.contains(row)) {
+            let here = row - chunk.first_row();
+            sums.push(chunk.pressure_pa()[here], chunk.length_m()[here], chunk.force_n()[here]);
         }
-        let half_m = 0.5 * (longest_m - shortest_m).max(f64::MIN_POSITIVE);
-        let mut map = Self {
-            highest_pa: highest_pa.max(f64::MIN_POSITIVE),
-            length_m: [0.5 * (shortest_m + longest_m), half_m],
-            weights: SVector::zeros(),
-        };
-        let (mut normal, mut right) = (SMatrix::<f64, N_TERMS, N_TERMS>::zeros(), SVector::<f64, N_TERMS>::zeros());
-        let mut n = 0.0;
-        for chunk in recording.samples.chunks() {
-            let chunk = chunk?;
-            for row in chunk.rows().filter(|row| row.is_multiple_of(stride) && !run.contains(row)) {
-                let here = row - chunk.first_row();
-                let terms = map.terms(chunk.pressure_pa()[here], chunk.length_m()[here]);
-                normal += terms * terms.transpose();
-                right += terms * chunk.force_n()[here];
-                n += 1.0;
-            }
-        }
-        // A trace of a prior, for terms that the recording does not tell apart.
-        let solved = (normal + SMatrix::identity() * (1e-6 * n)).cholesky();
-        Ok(solved.map(|solved| {
-            map.weights = solved.solve(&right);
-            map
-        }))
     }
-
-    fn residual_n(&self, chunk: &Chunk, here: usize) -> f64 {
-        chunk.force_n()[here] - self.terms(chunk.pressure_pa()[here], chunk.length_m()[here]).dot(&self.weights)
-    }
+    Ok(sums.map())
 }
 
 /// How far `values` spread, but for a few at either end; they are sorted.
@@ -229,7 +187,7 @@ fn spread(values: &mut [f64]) -> f64 {
 /// its largest force is given, also whether it pulled, as it did elsewhere at such pressures.
 fn moved(recording: &Recording, run: Range<usize>, largest_n: Option<f64>) -> io::Result<bool> {
     let stride = (run.len() / LOOKED_AT).max(1);
-    let Some(map) = Map::of(recording, &run, stride)? else { return Ok(false) };
+    let Some(map) = map_beside(recording, &run, stride)? else { return Ok(false) };
     let rows = recording.samples.n_rows();
     // Before and after the run, windows as long as it is, or as long as there are.
     let most_elsewhere = run.start.max(rows - run.end);
@@ -243,7 +201,10 @@ fn moved(recording: &Recording, run: Range<usize>, largest_n: Option<f64>) -> io
             let pressure_pa = chunk.pressure_pa()[row - chunk.first_row()];
             let highest_pa = if run.contains(&row) { &mut along_pa } else { &mut elsewhere_pa };
             *highest_pa = highest_pa.max(pressure_pa);
-            let residual_n = row.is_multiple_of(stride).then(|| map.residual_n(&chunk, row - chunk.first_row()));
+            let residual_n = row.is_multiple_of(stride).then(|| {
+                let here = row - chunk.first_row();
+                map.residual_n(chunk.pressure_pa()[here], chunk.length_m()[here], chunk.force_n()[here])
+            });
             if run.contains(&row) {
                 along_n.extend(residual_n);
                 expected_n.extend(residual_n.map(|residual_n| chunk.force_n()[row - chunk.first_row()] - residual_n));

@@ -3,7 +3,7 @@
 //! [`ranges`] finds units under the wrong name and recordings of another muscle from ranges alone;
 //! [`spikes`] and [`frozen`] find samples that no muscle makes, [`shaken`] those at which a hand shakes it; [`scale`] finds units that ranges do not show, [`zero`], after a fit,
 //! a gauge whose zero is elsewhere;
-//! [`channels`] finds swapped channels and a force of the wrong sign; [`disagree`] finds recordings that contradict one another;
+//! [`channels`] finds swapped channels and a force of the wrong sign; [`disagree`] finds recordings that contradict one another, [`stood`] those that do because a channel stands at a wrong value;
 //! [`apart`], after a fit, one recording of several whose instrument reads otherwise; [`twice`] finds a recording that is there twice; [`noise`] says where noise hides everything; [`lag`] finds a channel that lags the others; [`reading`] says what an
 //! instrument would have to read wrong where a model that is known misses a recording. All but the last two and [`apart`] refuse the recording,
 //! because a fit would absorb the fault in its parameters.
@@ -18,7 +18,9 @@ pub mod ranges;
 pub mod reading;
 pub mod scale;
 pub mod shaken;
+mod smooth_map;
 pub mod spikes;
+pub mod stood;
 pub mod twice;
 pub mod zero;
 
@@ -78,6 +80,24 @@ pub enum Fault {
         to_s: f64,
         /// For how many rows.
         rows: usize,
+    },
+    /// A channel that never moves, at a value that the force denies.
+    #[error(
+        "{path}: {channel} is {value} in every row, and the force does not belong there: a smooth map of pressure and length \
+         leaves {here_n:.3} N of it, and {others_n:.3} N of the other recordings; the sensor was not connected or stood, or the \
+         value is not the one that was set: correct the column, leave the recording out, or go on with --accept-implausible"
+    )]
+    Stood {
+        /// Recording.
+        path: String,
+        /// Channel.
+        channel: &'static str,
+        /// Where it stands, with its unit.
+        value: String,
+        /// Root mean square that the map leaves of this recording, in N.
+        here_n: f64,
+        /// And of the others, without this one, in N.
+        others_n: f64,
     },
     /// A gain that no muscle has, and units that explain it.
     #[error(
@@ -198,6 +218,10 @@ pub fn find(gates: &[Gated], muscle: &Muscle) -> std::io::Result<Option<Fault>> 
         if let Some(fault) = scale::find(gate, &looks, muscle) {
             return Ok(Some(fault));
         }
+    }
+    // Before the gain: what stands at a wrong value contradicts the others, too, and is the better explanation.
+    if let Some(fault) = stood::find(gates)? {
+        return Ok(Some(fault));
     }
     disagree::find(gates, muscle)
 }
