@@ -50,8 +50,8 @@ fn carried(setting: &Setting<'_>, found: &Found, state: &State, nuisance: &Nuisa
 /// Lets go of every name of `found` where the model with them leaves more than the base model alone, over all samples, of the
 /// recordings that it was fitted to and of `held`: it models nothing. Whether it did.
 pub(crate) fn let_go_of_what_models_nothing(setting: &Setting<'_>, found: &mut Found, held: &Track) -> bool {
-    // What happened once is on no other recording.
-    let is_judged = |guess: &CandidateEffect| guess.effect.kind() != Kind::Event;
+    // What happened once is on no other recording, and a model knows no beginnings of what outlasts one.
+    let is_judged = |guess: &CandidateEffect| guess.effect.kind() != Kind::Event && !guess.effect.outlasts();
     if found.best.state.guesses.is_empty() || !found.best.state.guesses.iter().all(is_judged) {
         return false;
     }

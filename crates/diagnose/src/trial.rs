@@ -335,6 +335,13 @@ mod tests {
         assert!(wants_another(of("rubber-hysteresis"), &[1e-4]));
         assert!(wants_another(of("rate-dependent-hysteresis"), &[1e-5]));
         assert!(!wants_another(of("rubber-hysteresis"), &[1e-3]));
+        // A thousandth of the range belongs to its upper end, and a twentieth of it to its lower one.
+        assert!(
+            wants_another(of("rubber-hysteresis"), &[0.02998]) && !wants_another(of("rubber-hysteresis"), &[0.0299])
+        );
+        assert!(
+            wants_another(of("rubber-hysteresis"), &[1.04e-4]) && !wants_another(of("rubber-hysteresis"), &[1.06e-4])
+        );
         assert!(!wants_another(of("pressure-creep"), &[6.0, 1.0]));
         assert!(!wants_another(of("stribeck"), &[5e-3, 2.5, 200.0]));
     }

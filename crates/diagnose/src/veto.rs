@@ -36,6 +36,8 @@ const TELLS: f64 = 0.3;
 /// Evidence within what was fitted that stands where nothing held out tells. Of 400 cases that this was chosen by, all five effects
 /// with more were right that do not outlast a recording, and both with 9 to 10 were wrong.
 const STANDS_ALONE: f64 = 10.0;
+/// The same for what outlasts a recording: what it was at the beginning of each is fitted beside it, and helps any of them.
+const OUTLASTS_ALONE: f64 = 20.0;
 
 /// Searches again without what was denied, at most.
 const MOST_AGAIN: usize = 2;
@@ -61,13 +63,24 @@ pub(crate) fn confirmed(
         let next = question.search_without(track, &excluded)?;
         let (mut next, its_strongest) = without_denied(question, track, next, heldout);
         strongest = its_strongest;
-        if next.taken.iter().any(|taken| taken.is_confirmed) {
+        if next.taken.iter().any(|taken| taken.is_confirmed) || stands_unseen(&next) {
             next.first = found.first;
             next.denied.extend(found.denied);
             found = next;
         }
     }
     Ok(found)
+}
+
+/// Whether the strongest of `found`, of which nothing was denied, is one that other recordings may not show, on evidence that nothing
+/// else is asked for.
+fn stands_unseen(found: &Found) -> bool {
+    let evidence = |index: &usize| evidence(found, *index);
+    let strongest = (0..found.taken.len()).max_by(|one, other| evidence(one).total_cmp(&evidence(other)));
+    strongest.is_some_and(|index| {
+        let effect = found.best.state.guesses[index].effect;
+        (effect.kind() == Kind::Event || effect.outlasts()) && evidence(&index) > OUTLASTS_ALONE
+    })
 }
 
 /// `found` without what was denied, and the id of the one with the strongest evidence if that was.
@@ -131,6 +144,8 @@ struct Denied {
     index: usize,
     /// Largest share with which it may be there.
     most: f64,
+    /// For it within what was fitted: of what nothing held out tells, the weakest goes first.
+    evidence: f64,
     /// Whether something is there, but more than it.
     too_large: bool,
 }
@@ -169,7 +184,13 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
         let is_denied = share.is_some_and(|share| share.denies(guess.effect));
         let tells = share.is_some_and(|share| share.error < TELLS);
         let is_open = !guess.effect.outlasts() || matches!(guess.beginning, Beginning::GoesOn(_));
-        let stands = stands || !tells && is_open && evidence(found, index) > STANDS_ALONE;
+        // What is permanent may have come to its end before what was held out.
+        let alone = match guess.effect.is_permanent() {
+            _ if is_open => STANDS_ALONE,
+            true => OUTLASTS_ALONE,
+            false => f64::INFINITY,
+        };
+        let stands = stands || !tells && evidence(found, index) > alone;
         let is_unseen = !stands && share.is_none_or(|share| share.least() <= 0.0);
         // What is denied goes before what is only not seen.
         let most = match share {
@@ -177,8 +198,9 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
             Some(share) => share.value.max(SEEN),
             None => SEEN,
         };
-        if (is_denied || is_unseen) && least.is_none_or(|least| most < least.most) {
-            least = Some(Denied { index, most, too_large });
+        let evidence = evidence(found, index);
+        if (is_denied || is_unseen) && least.is_none_or(|least| (most, evidence) < (least.most, least.evidence)) {
+            least = Some(Denied { index, most, evidence, too_large });
         }
     }
     least
@@ -189,7 +211,7 @@ fn shares(setting: &Setting<'_>, held: &Setting<'_>, found: &Found) -> Vec<Optio
     let state = &found.best.state;
     let of = |(index, guess): (usize, &CandidateEffect)| {
         if matches!(guess.beginning, Beginning::GoesOn(_)) {
-            return foretold(setting, held.track, state, index);
+            return foretold(setting, held.track, found, index);
         }
         is_judged(guess.effect).then(|| share(held, state, index)).flatten()
     };
@@ -198,11 +220,16 @@ fn shares(setting: &Setting<'_>, held: &Setting<'_>, found: &Found) -> Vec<Optio
 
 /// The share of effect `index`, which goes on from recording to recording: what was held out comes after it, and shows nothing of it
 /// but what the base would be without it. All of it where `held` is foretold better with it, its opposite where without it.
-fn foretold(setting: &Setting<'_>, held: &Track, state: &State, index: usize) -> Option<Share> {
-    let without = setting.fit_without(state, index)?;
-    let left = |state: &State| Left::of(&AugmentedModel::new(state.model.clone(), state.terms()), held);
-    let (with, without) = (left(state), left(&without));
-    let value = match (without.is_bettered_by(&with), with.is_bettered_by(&without)) {
+fn foretold(setting: &Setting<'_>, held: &Track, found: &Found, index: usize) -> Option<Share> {
+    let with = &found.best.state;
+    let without = setting.fit_without(with, index)?;
+    // Beside the static map, or a misfit of eq. 11 would decide.
+    let left = |state: &State| {
+        let map = setting.nuisance.map_term(&state.fit.nuisances, setting.track, &found.coordinates);
+        Left::of(&AugmentedModel::new(state.model.clone(), state.terms().into_iter().chain(map).collect()), held)
+    };
+    let (with, without) = (left(with), left(&without));
+    let value = match (without.is_surely_bettered_by(&with), with.is_surely_bettered_by(&without)) {
         (true, _) => 1.0,
         (false, true) => -1.0,
         (false, false) => return None,

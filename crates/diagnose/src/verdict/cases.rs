@@ -65,6 +65,13 @@ fn what_is_left_is_a_share_of_mean_squares_and_never_more_than_all() {
 }
 
 #[test]
+fn what_knocks_explain_besides_adds_to_the_mismatch_in_squares() {
+    let knocks = InertialTransient::of_test(7.5);
+    let with = Sizes { left_n: 3.0, ..SIZES }.with(&knocks);
+    assert_eq!((with.mismatch_n, with.left_n), (12.5, 3.0));
+}
+
+#[test]
 fn what_is_unexplained_is_what_the_best_hypothesis_leaves_above_the_floor() {
     assert!((Sizes { best_n: 26.0_f64.sqrt(), ..SIZES }.share_unexplained() - 0.25).abs() < 1e-12);
     assert_eq!(Sizes { best_n: 0.5, ..SIZES }.share_unexplained(), 0.0);
@@ -155,6 +162,7 @@ fn a_rival_that_explains_nearly_as_much_makes_a_name_ambiguous() {
         assert_eq!(of(share + 0.01, share + 0.01), [id]);
         assert!(of(share - 0.01, share + 0.01).is_empty(), "{id} gains less");
         assert!(of(share + 0.01, share - 0.01).is_empty(), "{id} has less evidence");
+        assert!(of(share + 0.01, share).is_empty(), "{id} has no more");
     }
     lag_with(&mut found, &[("channel-delay", 1.0, own)]);
     assert_eq!(verdict(&found, &SIZES, false), Verdict::Ambiguous);

@@ -29,6 +29,10 @@ impl Effect for SeriesCompliance {
         true
     }
 
+    fn is_like_the_base(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Fixture
     }

@@ -46,6 +46,15 @@ impl Desk {
         })
     }
 
+    /// What the static map takes up, in N², and what is asked of it.
+    fn map_and_asked(&self) -> (f64, Asked) {
+        self.look(|look, base| {
+            let (bare, mapped) = (again(look.plain, base).expect("a fit"), again(look.mapped, base).expect("a fit"));
+            let range_n = look.seen.force_n.1 - look.seen.force_n.0;
+            (bare.held_out.mean_square() - mapped.held_out.mean_square(), Asked::of(look.limits, 0.02, range_n))
+        })
+    }
+
     /// The effect that stands for the static map.
     fn of_the_map(&self) -> Option<&'static str> {
         self.look(|look, base| Some(look.static_effect(base, base, 0.02)?.state.guesses[0].id()))
@@ -77,7 +86,7 @@ fn what_a_map_takes_up_in_any_muscle_is_of_the_sensors_or_of_the_range_of_the_fo
 fn a_map_is_asked_for_what_matters_and_for_what_no_healthy_muscle_has() {
     // Sensors of 0.3 N leave 25 times 0.09 N² in any muscle, a range of 1000 N 4.5² N², and at most 13.5² N².
     let asked = |limits: &Limits, floor_square, range_n| {
-        let Asked { least, most } = Asked::of(limits, floor_square, range_n);
+        let Asked { least, most, .. } = Asked::of(limits, floor_square, range_n);
         (least, most)
     };
     let near = |(least, most): (f64, f64), expected: (f64, f64)| {
@@ -92,14 +101,14 @@ fn a_map_is_asked_for_what_matters_and_for_what_no_healthy_muscle_has() {
 
 #[test]
 fn what_acts_through_the_base_or_strains_it_needs_more_of_a_map() {
-    let asked = Asked { least: 20.0, most: 180.0 };
+    let asked = Asked { least: 20.0, most: 180.0, sure: 0.1 };
     // Above what is asked of an effect, and below.
     for (sees, strained, limit) in
         [(false, false, 20.0), (true, false, 40.0), (false, true, 180.0), (true, true, 180.0)]
     {
         assert!(asked.is_met(limit + 0.1, sees, strained) && !asked.is_met(limit - 0.1, sees, strained), "{limit}");
     }
-    let quiet = Asked { least: 120.0, most: 180.0 };
+    let quiet = Asked { least: 120.0, most: 180.0, sure: 0.1 };
     assert!(quiet.is_met(240.1, true, true) && !quiet.is_met(239.9, true, true), "whichever is more");
 }
 
@@ -107,6 +116,13 @@ fn what_acts_through_the_base_or_strains_it_needs_more_of_a_map() {
 fn an_effect_stands_for_a_map_where_it_gains_nearly_all_of_it_with_evidence() {
     assert!(stands_for_map(93.1, 100.0, 1.6));
     assert!(!stands_for_map(92.9, 100.0, 9.0) && !stands_for_map(99.0, 100.0, 1.5));
+    assert!(!stands_for_map(93.0, 100.0, 9.0), "no more than the share");
+}
+
+#[test]
+fn beyond_doubt_it_takes_more_of_the_map_and_more_evidence() {
+    assert!(surely_stands_for_map(97.1, 100.0, 15.1));
+    assert!(!surely_stands_for_map(97.0, 100.0, 30.0) && !surely_stands_for_map(99.0, 100.0, 15.0));
 }
 
 #[test]
@@ -159,6 +175,18 @@ fn a_threshold_that_the_whole_map_follows_is_named_in_its_place() {
 }
 
 #[test]
+fn a_small_lock_up_is_named_where_a_small_compliance_may_be_a_misfit_of_the_base() {
+    // Both take up less of the force than eq. 11 misses of any muscle, and far more than the sensors leave.
+    let lock_up = Desk::of(&[("braid-lockup", &[0.15, 0.01], &[300.0])]);
+    let compliance = Desk::of(&[("series-compliance", &[1e-6, 0.0, 0.0], &[])]);
+    for desk in [&lock_up, &compliance] {
+        let (map, asked) = desk.map_and_asked();
+        assert!(3.0 * asked.sure < map && map < 0.8 * asked.least, "{map} {asked:?}");
+    }
+    assert_eq!((lock_up.of_the_map(), compliance.of_the_map()), (Some("braid-lockup"), None));
+}
+
+#[test]
 fn a_limit_of_what_matters_keeps_smaller_maps_without_a_name() {
     let mut desk = Desk::of(&[("threshold-pressure", &[6e4], &[])]);
     desk.limits.matters_above_n = Some(500.0);
@@ -180,4 +208,13 @@ fn only_what_changes_pressure_or_length_acts_as_the_base_does() {
     let base = base.expect("folds");
     assert!(!is_strained(&setting, &of("viscous-damping", &[]), &base));
     assert!(!is_strained(&setting, &base, &base));
+    // Beside half as much force again k1 is what no muscle has.
+    let mut stronger = Given::of(&PROTOCOLS, &[]);
+    stronger.track.instants.iter_mut().for_each(|instant| instant.force_n *= 1.5);
+    let strained = |id: &str, shape: &[f64]| {
+        let state = stronger.setting().fit(vec![stronger.guess(id, shape)], &stronger.start, &stronger.model);
+        is_strained(&setting, &judged(&setting, state.expect("a fit")).expect("folds"), &base)
+    };
+    assert!(strained("braid-lockup", &[0.15, 0.01]));
+    assert!(!strained("slack", &[0.0, 0.0]) && !strained("viscous-damping", &[]));
 }
