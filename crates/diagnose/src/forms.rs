@@ -14,7 +14,6 @@ use crate::hypothesis::CandidateEffect;
 use crate::nuisance::{Nuisance, over_range};
 use crate::state::{Setting, State};
 use crate::track::Track;
-use crate::veto::force_n as modelled_n;
 
 /// By how much a shape bends to either side.
 const FACTORS: [f64; 2] = [0.5, 2.0];
@@ -69,7 +68,7 @@ fn forms_n(setting: &Setting<'_>, state: &State, coordinates: &Coordinates, plac
 /// of each as well, and a shape that is zero to either side of it.
 pub(crate) fn of_known_n(track: &Track, base: &ForceModel, terms: &[Term]) -> Vec<Vec<f64>> {
     let coordinates = Coordinates::of(track);
-    let with_n = |terms: Vec<Term>| modelled_n(track, &AugmentedModel::new(base.clone(), terms));
+    let with_n = |terms: Vec<Term>| track.modelled_n(&AugmentedModel::new(base.clone(), terms));
     let whole_n = with_n(terms.to_vec());
     let friction = track.instants.iter().map(|instant| {
         let Moment { pressure_pa, length_m, direction, .. } = instant.moment;

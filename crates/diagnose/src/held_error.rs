@@ -6,7 +6,6 @@ use pam_identification::prepare::Prepared;
 use pam_identification::trace::trace_augmented;
 
 use crate::track::Track;
-use crate::veto::force_n;
 
 /// Share of the error (mean square over all instants) of held-out recordings that a term must take away to be written.
 const LEAST_GAIN: f64 = 0.05;
@@ -32,7 +31,7 @@ pub(crate) struct Left {
 impl Left {
     /// Of `model`, without what happened once.
     pub(crate) fn of(model: &AugmentedModel, held: &Track) -> Self {
-        let modelled_n = force_n(held, &model.elsewhere());
+        let modelled_n = held.modelled_n(&model.elsewhere());
         let missed_n = |at: usize| (held.instants[at].force_n - modelled_n[at], held.counted[at]);
         let is_recorded = |at: &usize| held.instants[*at].force_n.is_finite();
         Self::of_each(held.recordings.iter().map(|range| range.clone().filter(is_recorded).map(missed_n).collect()))

@@ -11,14 +11,13 @@
 use std::ops::Range;
 
 use pam_core::artifact::diagnosis::Isolability;
-use pam_core::effects::{AugmentedModel, Effect, Role, Term};
+use pam_core::effects::{AugmentedModel, Effect, Term};
 use rayon::prelude::*;
 
 use crate::design_matrix::Regressors;
 use crate::hypothesis::{Beginning, CandidateEffect, Sign};
 use crate::state::{Setting, State};
 use crate::tangent::{Tangent, dot, norm};
-use pam_core::shift::shifted;
 
 /// Means over time that are compared, about; memories run over all instants.
 const MOST_ROWS: usize = 6000;
@@ -140,26 +139,10 @@ fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess:
             .collect();
     }
     let mut terms = state.terms();
-    let before_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms.clone()));
+    let before_n = setting.track.modelled_n(&AugmentedModel::new(state.model.clone(), terms.clone()));
     terms.push(Term::new(guess.effect, guess.shape.clone(), Vec::new()));
-    let after_n = force_n(setting, &AugmentedModel::new(state.model.clone(), terms));
+    let after_n = setting.track.modelled_n(&AugmentedModel::new(state.model.clone(), terms));
     vec![tangent.left_of(|row| after_n[row] - before_n[row])]
-}
-
-/// Force of `model` at every instant.
-fn force_n(setting: &Setting<'_>, model: &AugmentedModel) -> Vec<f64> {
-    let delays_s = model.terms().iter().filter(|term| term.effect.role() == Role::Shift).fold([0.0; 2], |sum, term| {
-        let more_s = term.effect.delays_s(&term.shape);
-        [sum[0] + more_s[0], sum[1] + more_s[1]]
-    });
-    let track = setting.track;
-    let mut force_n = Vec::with_capacity(track.n());
-    for range in &track.recordings {
-        let mut memory = model.start();
-        let moments = shifted(&track.instants[range.clone()], delays_s);
-        force_n.extend(moments.into_iter().map(|moment| memory.force_n(model, moment)));
-    }
-    force_n
 }
 
 #[cfg(test)]

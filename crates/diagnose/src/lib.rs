@@ -6,6 +6,7 @@
 
 pub mod artifact;
 pub mod base;
+mod best_law;
 mod carried;
 mod check;
 pub mod coordinates;

@@ -6,8 +6,10 @@
 use std::ops::Range;
 
 use pam_core::direction::{Direction, Thresholds};
+use pam_core::effects::{AugmentedModel, Moment};
 use pam_core::force::ForceModel;
 use pam_core::motion::{Channels, Instant, walk};
+use pam_core::shift::shifted;
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
 use rayon::prelude::*;
@@ -114,6 +116,23 @@ impl Track {
         track.counted = track.instants.iter().map(counts).collect();
         track.sample();
         Ok(track)
+    }
+
+    /// Force that `model` predicts at every instant, in N, with what it carries from recording to recording.
+    pub(crate) fn modelled_n(&self, model: &AugmentedModel) -> Vec<f64> {
+        let delays_s = model.delays_s();
+        let mut forces_n = Vec::with_capacity(self.n());
+        for (recording, range) in self.recordings.iter().enumerate() {
+            let instants = &self.instants[range.clone()];
+            let moments: Vec<Moment> = if delays_s == [0.0; 2] {
+                instants.iter().map(|instant| instant.moment).collect()
+            } else {
+                shifted(instants, delays_s)
+            };
+            let mut memory = model.start_in(recording);
+            forces_n.extend(moments.into_iter().map(|moment| memory.force_n(model, moment)));
+        }
+        forces_n
     }
 
     /// The same instants with other `directions` of their recordings.

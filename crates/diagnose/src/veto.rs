@@ -6,9 +6,8 @@
 //! than half of its size or more than twice, and surely so, was another one: where that had the strongest evidence, the
 //! next best is looked for.
 
-use pam_core::effects::{AugmentedModel, Effect, Kind, Moment};
+use pam_core::effects::{AugmentedModel, Effect, Kind};
 use pam_core::force::ForceModel;
-use pam_core::shift::shifted;
 
 use crate::coordinates::Coordinates;
 use crate::error::DiagnoseError;
@@ -287,11 +286,11 @@ impl Share {
 
 /// The share of effect `index` on what was held out; none where nothing can be said.
 fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
-    let whole_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), state.terms()).elsewhere());
+    let whole_n = held.track.modelled_n(&AugmentedModel::new(state.model.clone(), state.terms()).elsewhere());
     let mut others = state.terms();
     others.remove(index);
-    let rest_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), others).elsewhere());
-    let base_n = force_n(held.track, &AugmentedModel::new(state.model.clone(), Vec::new()));
+    let rest_n = held.track.modelled_n(&AugmentedModel::new(state.model.clone(), others).elsewhere());
+    let base_n = held.track.modelled_n(&AugmentedModel::new(state.model.clone(), Vec::new()));
     // What went before a recording is not known.
     let guess = &state.guesses[index];
     let nuisance = if guess.effect.outlasts() {
@@ -341,23 +340,6 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
     let plain = correlated_instants(held, &left) * variance.max(held.floor_square) / square;
     let error = jackknife.max(plain).sqrt();
     (share.is_finite() && error.is_finite()).then_some(Share { value: share, error })
-}
-
-/// Force that `model` predicts at every instant of `track`, in N.
-pub(crate) fn force_n(track: &Track, model: &AugmentedModel) -> Vec<f64> {
-    let delays_s = model.delays_s();
-    let mut forces_n = Vec::with_capacity(track.n());
-    for (recording, range) in track.recordings.iter().enumerate() {
-        let instants = &track.instants[range.clone()];
-        let moments: Vec<Moment> = if delays_s == [0.0; 2] {
-            instants.iter().map(|instant| instant.moment).collect()
-        } else {
-            shifted(instants, delays_s)
-        };
-        let mut memory = model.start_in(recording);
-        forces_n.extend(moments.into_iter().map(|moment| memory.force_n(model, moment)));
-    }
-    forces_n
 }
 
 #[cfg(test)]

@@ -9,7 +9,6 @@ use crate::explain::rms;
 use crate::search::{Found, Limits};
 use crate::state::{Setting, State};
 use crate::verdict::{Sizes, verdict};
-use crate::veto::force_n;
 
 /// Share of its force, root mean square, below which nothing is left of a name. Of 124 cases that this was found by, terms left three
 /// names that held-out recordings did not show 0 to 6 % of it, all wrong, and two that those showed 0 % (wrong) and 7 % (right); every
@@ -58,7 +57,7 @@ fn replaced(setting: &Setting<'_>, found: &Found, beside: &State) -> Option<usiz
 
 /// Force of `term` beside the base of `state`, root mean square, in N.
 fn size_n(setting: &Setting<'_>, state: &State, term: &Term) -> f64 {
-    let force = |terms: Vec<Term>| force_n(setting.track, &AugmentedModel::new(state.model.clone(), terms));
+    let force = |terms: Vec<Term>| setting.track.modelled_n(&AugmentedModel::new(state.model.clone(), terms));
     rms(&force(vec![term.clone()]), &force(Vec::new()))
 }
 
