@@ -114,20 +114,23 @@ mod tests {
 
     #[test]
     fn a_name_that_raises_the_error_everywhere_is_let_go_of_and_one_that_lowers_it_is_not() {
-        let names = |concealed: &[(&'static str, &[f64], &[f64])]| {
+        let names = |id: &'static str, shape: &[f64], concealed: &[(&'static str, &[f64], &[f64])]| {
             let [fitted, held] = ["isobaric-triangles", "multisine"].map(|protocol| Given::of(&[protocol], concealed));
             let limits = Limits::of_test(0, 0.3);
             let plain = Setting { floor_square: 0.09, ..fitted.setting() };
             let mut found = search(&plain, &fitted.start, &fitted.model, &limits, &|| {}).expect("a search");
             let nuisance = found.nuisance.clone();
             let setting = plain.beside(&nuisance);
-            let state = setting.fit_near(vec![fitted.guess("channel-delay", &[0.06, 0.0])], &found.best.state);
+            let state = setting.fit_near(vec![fitted.guess(id, shape)], &found.best.state);
             found.best = judged(&setting, state.expect("a fit")).expect("a fit of every fold");
             let_go_of_what_models_nothing(&setting, &mut found, &held.track);
             found.best.state.guesses.iter().map(|guess| guess.id()).collect::<Vec<_>>()
         };
-        assert_eq!(names(&[]), Vec::<&str>::new());
-        assert_eq!(names(&[("channel-delay", &[0.06, 0.0], &[])]), ["channel-delay"]);
+        let delay: (&'static str, &[f64], &[f64]) = ("channel-delay", &[0.06, 0.0], &[]);
+        assert_eq!(names("channel-delay", &[0.06, 0.0], &[]), Vec::<&str>::new());
+        assert_eq!(names("channel-delay", &[0.06, 0.0], &[delay]), ["channel-delay"]);
+        // Where it begins is not known.
+        assert_eq!(names("thermal-softening", &[300.0], &[]), ["thermal-softening"]);
     }
 
     #[test]

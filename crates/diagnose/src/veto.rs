@@ -345,8 +345,9 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::joint::HeldOut;
     use crate::rehearsal::tests::Given;
-    use crate::search::{Limits, search};
+    use crate::search::{Limits, Taken, search};
 
     /// The share of a lag of 150 ms in `held`, where `fitted` has all of it.
     fn seen(held: &Given, fitted: &Given) -> Option<Share> {
@@ -406,5 +407,35 @@ mod tests {
         found.taken[further].without = found.taken[further].with.clone();
         assert_eq!(denied(&found, &with(None)).map(|denied| denied.index), Some(further));
         assert_eq!(strongest(&found, &with(None)), Some(1 - further));
+        // Of two that nothing shows, the weaker one, whichever was found first.
+        let third = found.best.state.guesses[further].clone();
+        found.best.state.guesses.push(third);
+        let mut taken = found.taken[further].clone();
+        taken.without.blocks.iter_mut().for_each(|square| *square *= 1.1);
+        found.taken.push(taken);
+        assert!(evidence(&found, 2) > evidence(&found, further) && evidence(&found, 2) < STANDS_ALONE);
+        let shares = [with(None).as_slice(), &[None]].concat();
+        assert_eq!(denied(&found, &shares).map(|denied| denied.index), Some(further));
+        found.taken.swap(2, further);
+        assert_eq!(denied(&found, &shares).map(|denied| denied.index), Some(2));
+    }
+
+    #[test]
+    fn what_other_recordings_cannot_show_stands_on_strong_evidence_alone() {
+        let stands = |id: &str, shape: &[f64], times: f64| {
+            let given = Given::of(&["multisine"], &[]);
+            let limits = Limits::of_test(0, 0.1);
+            let plain = given.setting();
+            let mut found = search(&plain, &given.start, &given.model, &limits, &|| {}).expect("a search");
+            let state = plain.fit_near(vec![given.guess(id, shape)], &found.best.state).expect("a fit");
+            found.best.state = state;
+            let held = |square| HeldOut { blocks: vec![square; 10], counts: vec![10.0; 10], floor_square: 0.0 };
+            let (without, with) = (held(times), held(1.0));
+            found.taken = vec![Taken { without, with, rivals: Vec::new(), is_confirmed: false }];
+            stands_unseen(&found)
+        };
+        // Ten blocks of a ninth are 22, of a fifth 16.
+        assert!(stands("force-step", &[0.0, 5.0], 9.0) && stands("thermal-softening", &[300.0], 9.0));
+        assert!(!stands("force-step", &[0.0, 5.0], 5.0) && !stands("pressure-lag", &[0.15, 0.0], 9.0));
     }
 }

@@ -76,6 +76,14 @@ fn a_shape_where_nothing_published_is_has_no_name() {
     });
     assert!(!any && found.stand_ins.is_empty());
     assert_eq!(ids(&found), ["pressure-lag"]);
+    // Recordings that nothing was fitted to know better.
+    let (any, found) = Desk::new().ask(vec![guess("pressure-lag", &[1.0, 0.0])], |setting, mut found, _| {
+        let held = || HeldOut { blocks: vec![1.0], counts: vec![1.0], floor_square: 0.0 };
+        found.taken = vec![Taken { without: held(), with: held(), rivals: Vec::new(), is_confirmed: true }];
+        (let_go_of_ends(setting, &mut found), found)
+    });
+    assert!(!any);
+    assert_eq!(ids(&found), ["pressure-lag"]);
 }
 
 /// What is left of `guesses` where `share` of the mismatch is unexplained and `left` of it structured; `confirmed` says of the
