@@ -335,7 +335,7 @@ mod tests {
         assert!(wants_another(of("rubber-hysteresis"), &[1e-4]));
         assert!(wants_another(of("rate-dependent-hysteresis"), &[1e-5]));
         assert!(!wants_another(of("rubber-hysteresis"), &[1e-3]));
-        // A thousandth of the range belongs to its upper end, and a twentieth of it to its lower one.
+        // The upper end reaches a thousandth of the range inwards, the lower one a twentieth of its own value.
         assert!(
             wants_another(of("rubber-hysteresis"), &[0.02998]) && !wants_another(of("rubber-hysteresis"), &[0.0299])
         );

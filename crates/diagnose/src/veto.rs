@@ -35,14 +35,16 @@ const TELLS: f64 = 0.3;
 /// Evidence within what was fitted that stands where nothing held out tells. Of 400 cases that this was chosen by, all five effects
 /// with more were right that do not outlast a recording, and both with 9 to 10 were wrong.
 const STANDS_ALONE: f64 = 10.0;
-/// The same for what outlasts a recording: what it was at the beginning of each is fitted beside it, and helps any of them.
+/// The same for what outlasts a recording, since what it was at the beginning of each is fitted beside it and helps any of them; and for
+/// what is taken in the place of a name that was denied.
 const OUTLASTS_ALONE: f64 = 20.0;
 
 /// Searches again without what was denied, at most.
 const MOST_AGAIN: usize = 2;
 
 /// `found` on `track` without the effects that `heldout` says are not there, and the others marked where it surely shows them. Where
-/// the strongest is none, the next best may be the one: it is taken in its place where `heldout` surely shows that.
+/// the strongest is none, the next best may be the one: it is taken in its place where `heldout` surely shows that,
+/// or cannot show it and the evidence is strong.
 ///
 /// # Errors
 /// As [`DiagnosisProblem::search_without`].
@@ -184,10 +186,12 @@ fn denied(found: &Found, shares: &[Option<Share>]) -> Option<Denied> {
         let tells = share.is_some_and(|share| share.error < TELLS);
         let is_open = !guess.effect.outlasts() || matches!(guess.beginning, Beginning::GoesOn(_));
         // What is permanent may have come to its end before what was held out.
-        let alone = match guess.effect.is_permanent() {
-            _ if is_open => STANDS_ALONE,
-            true => OUTLASTS_ALONE,
-            false => f64::INFINITY,
+        let alone = if is_open {
+            STANDS_ALONE
+        } else if guess.effect.is_permanent() {
+            OUTLASTS_ALONE
+        } else {
+            f64::INFINITY
         };
         let stands = stands || !tells && evidence(found, index) > alone;
         let is_unseen = !stands && share.is_none_or(|share| share.least() <= 0.0);

@@ -13,7 +13,7 @@ use super::channels::Look;
 use super::smooth_map::{SmoothMap, Sums};
 use crate::prepare::Gated;
 
-/// How often as much as of the others the map may leave of the recording. Of 850 recordings in order the worst, taken as if a
+/// How often as much as of the others the map may leave of the recording. Of 550 recordings in order the worst, taken as if a
 /// channel of theirs were constant, comes to 2.1; a gauge that shows zero and an encoder that stands come to 25 and 13.
 const MOST_LEFT: f64 = 5.0;
 /// Share of the range of all forces that it must leave besides: a bench without friction or misfit leaves nothing of the others.
@@ -85,7 +85,7 @@ pub fn find(gates: &[Gated]) -> io::Result<Option<Fault>> {
 mod tests {
     use super::*;
 
-    /// A recording of a muscle whose force is that of [`force_n`] with a loop of friction, and what its channels show.
+    /// A recording of a muscle with a loop of friction, as its channels show it.
     fn look(shows: impl Fn(f64, f64) -> (f64, f64)) -> Look {
         let rows = (0..500).map(|row| {
             let t = 0.05 * f64::from(row);
