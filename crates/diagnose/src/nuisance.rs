@@ -252,10 +252,15 @@ impl Nuisance {
     pub fn map_term(&self, coefficients: &[f64], track: &Track, coordinates: &Coordinates) -> Option<Term> {
         let columns =
             |wanted: Group| self.groups.iter().find(|(group, _)| *group == wanted).map(|(_, columns)| columns);
-        let (even, odd) = (columns(Group::EvenMap)?, columns(Group::OddMap)?);
+        let even = columns(Group::EvenMap)?;
+        // Friction that was named stands in the place of the odd part.
+        let n_odd = static_map::terms(0, ODD_DEGREE).count();
+        let odd = columns(Group::OddMap).cloned().unwrap_or(0..0);
         let [(lowest_pa, highest_pa), (least, most)] =
             MAPPED.map(|kind| range(coordinates.of_kind(kind), &track.counted));
-        let amplitudes = even.clone().chain(odd.clone()).map(|column| coefficients[column] * self.scales[column]);
+        let missing = n_odd - odd.len();
+        let amplitudes = even.clone().chain(odd).map(|column| coefficients[column] * self.scales[column]);
+        let amplitudes = amplitudes.chain(std::iter::repeat_n(0.0, missing));
         Some(Term::new(effect(MAP_ID)?, vec![lowest_pa, highest_pa, least, most], amplitudes.collect()))
     }
 }

@@ -186,6 +186,12 @@ pub trait Effect: Sync {
         false
     }
 
+    /// Whether a static effect is friction: its force is odd in the direction of motion, so that only the odd part of a static map
+    /// can stand in for it, and what eq. 11 misses of a static force cannot.
+    fn is_odd(&self) -> bool {
+        false
+    }
+
     /// Whether it is itself still where shape `index` lies at this `end` of its range: an exponent says how, not what, and a mount
     /// may be rigid.
     fn may_end(&self, _index: usize, _end: f64) -> bool {

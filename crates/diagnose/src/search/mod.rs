@@ -14,7 +14,7 @@ use pam_core::effects::{Effect, Seen};
 use crate::coordinates::Coordinates;
 use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
-use crate::nuisance::Nuisance;
+use crate::nuisance::{Group, Nuisance};
 use crate::stand_ins;
 use crate::state::{Setting, State};
 use crate::structure::{Feature, ProjectedResidual, Structure, features, telling_force_n};
@@ -168,7 +168,7 @@ pub fn search(
     if let Some(unnamed) = &unnamed {
         floor_square = floor_square.min(unnamed.held_out.mean_square());
     }
-    let whole = best.clone();
+    let mut whole = best.clone();
     let mut first = Vec::new();
     let mut promising = Shapes::new();
     let mut known = Shapes::new();
@@ -205,6 +205,17 @@ pub fn search(
             best = second_look(&mapped, best, &seen, &promising);
         }
         floor_square = floor_square.min(best.held_out.mean_square());
+    }
+    let odd = {
+        let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
+        let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
+        (best.state.guesses.len() < limits.max_effects).then(|| look.odd_static(&best)).flatten()
+    };
+    if let Some(next) = odd {
+        // The friction takes the place of the odd part of the map from here on.
+        beside.smooth = beside.smooth.without(&[Group::OddMap]);
+        whole = again(&setting.beside(&beside.smooth), &whole)?;
+        best = next;
     }
     let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
     let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };

@@ -26,6 +26,10 @@ impl Effect for LoadDependentFriction {
         true
     }
 
+    fn is_odd(&self) -> bool {
+        true
+    }
+
     fn kind(&self) -> Kind {
         Kind::Muscle
     }
