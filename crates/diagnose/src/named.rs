@@ -120,7 +120,6 @@ pub(crate) fn named(
 
 /// What became of every candidate of the first look.
 pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
-    let base = found.whole.held_out.mean_square();
     let taken: Vec<&str> = found.best.state.guesses.iter().map(CandidateEffect::id).collect();
     let rivals: Vec<&str> = (0..taken.len()).flat_map(|index| alternatives(found, index)).collect();
     found
@@ -128,7 +127,8 @@ pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
         .iter()
         .map(|trial| {
             let id = trial.guess.id();
-            let explains = (1.0 - trial.held_out.mean_square() / base.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let before = trial.before.mean_square().max(f64::MIN_POSITIVE);
+            let explains = (1.0 - trial.held_out.mean_square() / before).clamp(0.0, 1.0);
             let outcome = if taken.contains(&id) || (knocks && id == knocks::ID) {
                 "named".to_owned()
             } else if rivals.contains(&id) {
@@ -148,7 +148,7 @@ pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
             };
             Candidate {
                 id: id.to_owned(),
-                evidence: evidence(&found.whole.held_out, &trial.held_out, found.first.len()),
+                evidence: evidence(&trial.before, &trial.held_out, found.first.len()),
                 explains,
                 outcome,
             }

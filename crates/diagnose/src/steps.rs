@@ -22,8 +22,9 @@ pub(crate) fn is_sudden(setting: &Setting<'_>, residuals_n: &[f64], shape: &[f64
     })
 }
 
-/// Mean residual just after an instant less that just before it, over as many of the nearest instants that count as there are
-/// within `near_s`; none where too little of either is within [`NEAR_S`].
+/// Median residual just after an instant less that just before it, over as many of the nearest instants that count as there are
+/// within `near_s`; none where too little of either is within [`NEAR_S`]. A median, since friction that turns over beside the instant
+/// leaves a spike there which is no jump.
 fn jump_n(
     setting: &Setting<'_>,
     residuals_n: &[f64],
@@ -34,22 +35,22 @@ fn jump_n(
     let instants = &setting.track.instants;
     let apart_s = |at: usize| (instants[at].moment.time_s - instant_s).abs();
     let middle = range.start + instants[range.clone()].partition_point(|instant| instant.moment.time_s < instant_s);
-    let mean_n = |side: &mut dyn Iterator<Item = usize>| {
-        let (mut wanted, mut sum_n, mut n) = (0_usize, 0.0, 0_usize);
+    let median_n = |side: &mut dyn Iterator<Item = usize>| {
+        let (mut wanted, mut values_n) = (0_usize, Vec::new());
         for at in side.take_while(|&at| apart_s(at) <= NEAR_S) {
             wanted += usize::from(apart_s(at) <= near_s);
-            if apart_s(at) > near_s && n >= wanted {
+            if apart_s(at) > near_s && values_n.len() >= wanted {
                 break;
             }
             if setting.track.counted[at] {
-                sum_n += residuals_n[at];
-                n += 1;
+                values_n.push(residuals_n[at]);
             }
         }
-        (n >= 5).then(|| sum_n / n as f64)
+        let middle = values_n.len() / 2;
+        (values_n.len() >= 5).then(|| *values_n.select_nth_unstable_by(middle, f64::total_cmp).1)
     };
-    let before_n = mean_n(&mut (range.start..middle).rev())?;
-    Some(mean_n(&mut (middle..range.end))? - before_n)
+    let before_n = median_n(&mut (range.start..middle).rev())?;
+    Some(median_n(&mut (middle..range.end))? - before_n)
 }
 
 /// Time to either side in which a drive that starts, stops or turns may be what made the force jump, in s.
@@ -98,13 +99,16 @@ const ALONE: f64 = 3.0;
 const PARTS: usize = 20;
 /// See [`PARTS`].
 const OTHERS: usize = 4;
+/// Parts from which on one of them may jump as much: where a recording begins, friction is as something before it left it.
+const MANY: usize = 8;
 
 /// Whether a jump of `own_n` in the given part stands alone among the largest of the parts in which drives stir at all; its
 /// neighbours do not count, for it may reach into them.
 fn stands_alone(largest_n: &[Option<f64>; PARTS], part: usize, own_n: f64) -> bool {
     let elsewhere = largest_n.iter().enumerate().filter(|(other, _)| other.abs_diff(part) > 1);
     let jumps_n: Vec<f64> = elsewhere.filter_map(|(_, jump_n)| *jump_n).collect();
-    jumps_n.len() >= OTHERS && jumps_n.iter().all(|&jump_n| own_n > ALONE * jump_n)
+    let as_large = jumps_n.iter().filter(|&&jump_n| own_n <= ALONE * jump_n).count();
+    jumps_n.len() >= OTHERS && as_large <= usize::from(jumps_n.len() >= MANY)
 }
 
 /// Shapes (recording, instant in s) of the most likely steps: where the two sides of a cut differ most in their mean.

@@ -18,6 +18,8 @@ pub struct Trial {
     pub guess: CandidateEffect,
     /// Mean square of the joint fit over the sampled instants, in N².
     pub mean_square: f64,
+    /// Mean squares over held-out blocks without it, beside the same nuisances.
+    pub before: HeldOut,
     /// Mean squares over held-out blocks.
     pub held_out: HeldOut,
     /// `Σ ln(without / with)` over held-out blocks.
@@ -173,7 +175,8 @@ pub fn among(
         .filter_map(|(mean_square, guess)| {
             let is_other = guess.effect.kind() == Kind::Event && !events::is_even(setting, state, &guess);
             if is_other || mean_square > (1.0 - LEAST_GAIN) * thin.fit.mean_square {
-                return Some(Trial { guess, mean_square, held_out: before.clone(), log_ratio: 0.0 });
+                let (before, held_out) = (before.clone(), before.clone());
+                return Some(Trial { guess, mean_square, before, held_out, log_ratio: 0.0 });
             }
             let (held_out, is_pressed) = weigh(setting, state, &guess)?;
             let beginnings = if guess.has_own_beginnings() { setting.track.recordings.len() } else { 0 };
@@ -185,7 +188,7 @@ pub fn among(
                 evidence = evidence.min(begun.log_ratio(&held_out));
             }
             let log_ratio = kept * evidence;
-            Some(Trial { guess, mean_square, held_out, log_ratio })
+            Some(Trial { guess, mean_square, before: before.clone(), held_out, log_ratio })
         })
         .collect();
     trials.sort_by(|left, right| right.log_ratio.total_cmp(&left.log_ratio));

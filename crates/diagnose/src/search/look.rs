@@ -8,7 +8,6 @@ use super::{Judged, Limits, again};
 use crate::coordinates::Coordinates;
 use crate::forms::Forms;
 use crate::hypothesis::{Beginning, CandidateEffect};
-use crate::joint::HeldOut;
 use crate::nuisance::{Group, Nuisance};
 use crate::plausible::strains;
 use crate::state::Setting;
@@ -88,12 +87,6 @@ fn surely_stands_for_map(gained: f64, map: f64, log_ratio: f64) -> bool {
     gained > SURELY_OF_THE_MAP * map && log_ratio > SURELY_LOG_RATIO
 }
 
-/// A trial, and what was left before it.
-pub(super) struct Tried {
-    pub(super) trial: Trial,
-    pub(super) before: HeldOut,
-}
-
 /// What every look at the catalogue shares.
 pub(super) struct Look<'a> {
     /// Beside the nuisances of the recordings alone.
@@ -114,13 +107,13 @@ impl Look<'_> {
 
     /// Every effect that `best` does not have, on top of it; best first. Beside a map that bends, a static effect is one more
     /// bend; beside a smooth one, one that acts in a part of the range stands out.
-    pub(super) fn trials(&self, best: &Judged, known: &Shapes) -> Option<Vec<Tried>> {
+    pub(super) fn trials(&self, best: &Judged, known: &Shapes) -> Option<Vec<Trial>> {
         let with_memory = |effect: &dyn Effect| !effect.is_static();
         let local = |effect: &dyn Effect| effect.is_static() && effect.is_local();
         let forms = Forms::of(self.mapped, &best.state, self.coordinates);
         let mut tried = self.beside(best, &forms, self.free, known, &with_memory)?;
         tried.extend(self.beside(best, &forms, self.mapped.nuisance, known, &local)?);
-        tried.sort_by(|left, right| right.trial.log_ratio.total_cmp(&left.trial.log_ratio));
+        tried.sort_by(|left, right| right.log_ratio.total_cmp(&left.log_ratio));
         Some(tried)
     }
 
@@ -131,7 +124,7 @@ impl Look<'_> {
         map: &Nuisance,
         known: &Shapes,
         wanted: &(dyn Fn(&dyn Effect) -> bool + Sync),
-    ) -> Option<Vec<Tried>> {
+    ) -> Option<Vec<Trial>> {
         let bare = again(&self.plain.beside(map), best)?;
         let formed = forms.beside(map, &self.plain.track.counted);
         let beside = self.plain.beside(&formed);
@@ -139,8 +132,7 @@ impl Look<'_> {
         // Other forms that only follow the noise are no better than none.
         let before = if bent.held_out.mean_square() < bare.held_out.mean_square() { &bent } else { &bare };
         let takes = |effect: &dyn Effect| self.allows(effect.page().id) && wanted(effect);
-        let trials = trial::among(&beside, &bent.state, &before.held_out, self.seen, known, &takes);
-        Some(trials.into_iter().map(|trial| Tried { trial, before: before.held_out.clone() }).collect())
+        Some(trial::among(&beside, &bent.state, &before.held_out, self.seen, known, &takes))
     }
 
     /// What could not be tried on these recordings at all, as what gains nothing.
@@ -154,7 +146,8 @@ impl Look<'_> {
             let guess =
                 CandidateEffect { effect, shape, sign: CandidateEffect::signs(effect)[0], beginning: Beginning::Fresh };
             let mean_square = best.state.fit.mean_square;
-            Trial { guess, mean_square, held_out: best.held_out.clone(), log_ratio: 0.0 }
+            let (before, held_out) = (best.held_out.clone(), best.held_out.clone());
+            Trial { guess, mean_square, before, held_out, log_ratio: 0.0 }
         };
         self.plain.effects.iter().filter(is_missing).map(nothing).collect()
     }
@@ -239,11 +232,10 @@ pub(super) fn is_strained(setting: &Setting<'_>, next: &Judged, base: &Judged) -
 }
 
 /// The trials that come anywhere near the best: what may stand in the place of what was taken.
-pub(super) fn promise(tried: &[Tried]) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
-    let best = tried.first().map_or(0.0, |tried| tried.trial.log_ratio);
+pub(super) fn promise(tried: &[Trial]) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
+    let best = tried.first().map_or(0.0, |trial| trial.log_ratio);
     tried
         .iter()
-        .map(|tried| &tried.trial)
         .filter(move |trial| trial.log_ratio > (0.15 * best).max(0.3))
         .map(|trial| (trial.guess.id(), trial.guess.shape.clone()))
 }

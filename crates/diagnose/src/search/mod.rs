@@ -22,7 +22,7 @@ use crate::trial::{Shapes, Trial};
 
 use beside::kept_map;
 pub(crate) use beside::{Beside, fitting};
-use look::{FORM_AT_MOST, Look, Tried, form_square, is_strained, promise};
+use look::{FORM_AT_MOST, Look, form_square, is_strained, promise};
 use settle::{at_rest, polished, second_look, settle, without};
 pub use worth::chance;
 use worth::worth;
@@ -180,22 +180,22 @@ pub fn search(
         let tried = look.trials(&best, &known)?;
         looked();
         if looks == 0 {
-            first = tried.iter().map(|tried| tried.trial.clone()).collect();
+            first.clone_from(&tried);
             first.extend(look.smooth_statics(&best)?);
             first.extend(look.not_tried(&best, &first));
         }
         looks += 1;
         known = promise(&tried).collect();
         promising.extend(known.clone());
-        for Tried { trial, before } in &tried {
+        for trial in &tried {
             // What a trial gains beside a free map says nothing of what a smooth one leaves.
-            let gained = before.mean_square() - trial.held_out.mean_square();
+            let gained = trial.before.mean_square() - trial.held_out.mean_square();
             floor_square = floor_square.min((best.held_out.mean_square() - gained).max(trial.held_out.mean_square()));
         }
         let next = tried
             .iter()
-            .filter(|tried| worth(tried, !best.state.guesses.is_empty(), &whole.held_out, floor_square, limits))
-            .filter_map(|chosen| settle(&mapped, &best, &chosen.trial))
+            .filter(|trial| worth(trial, !best.state.guesses.is_empty(), &whole.held_out, floor_square, limits))
+            .filter_map(|chosen| settle(&mapped, &best, chosen))
             .find(|next| !is_strained(&mapped, next, &base));
         let Some(next) = next else { break };
         beside = Beside::of(setting, &of_recordings, &coordinates, &next)?;

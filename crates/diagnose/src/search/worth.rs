@@ -1,8 +1,8 @@
 //! What a trial must gain to be taken.
 
 use super::Limits;
-use super::look::Tried;
 use crate::joint::HeldOut;
+use crate::trial::Trial;
 
 /// Share of what is left of the mismatch that an effect must explain to be taken.
 const LEAST_SHARE: f64 = 0.1;
@@ -30,8 +30,8 @@ const MATTERS: f64 = 0.1;
 
 /// Whether a trial gains more than chance and more than what does not matter; `further` where something was taken before, `whole` is
 /// what the base leaves beside a static map.
-pub(super) fn worth(tried: &Tried, further: bool, whole: &HeldOut, floor_square: f64, limits: &Limits) -> bool {
-    let Tried { trial, before } = tried;
+pub(super) fn worth(trial: &Trial, further: bool, whole: &HeldOut, floor_square: f64, limits: &Limits) -> bool {
+    let before = &trial.before;
     let gained = before.gain(&trial.held_out);
     let mismatch = before.mean_square() - floor_square;
     let full_floor = floor_square + limits.sensor_floor_n.powi(2);
@@ -68,7 +68,6 @@ pub fn chance(without: &HeldOut, with: &HeldOut) -> f64 {
 mod tests {
     use super::*;
     use crate::hypothesis::{Beginning, CandidateEffect, Sign};
-    use crate::trial::Trial;
 
     use pam_core::effects::effect;
 
@@ -77,11 +76,10 @@ mod tests {
     }
 
     /// A lag that leaves `after` of `before`, both mean squares in N², with the evidence `log_ratio`.
-    fn tried(before: f64, after: f64, log_ratio: f64) -> Tried {
+    fn tried(before: f64, after: f64, log_ratio: f64) -> Trial {
         let effect = effect("pressure-lag").expect("an id");
         let guess = CandidateEffect { effect, shape: vec![0.1], sign: Sign::Any, beginning: Beginning::Fresh };
-        let trial = Trial { guess, mean_square: after, held_out: held(after), log_ratio };
-        Tried { trial, before: held(before) }
+        Trial { guess, mean_square: after, before: held(before), held_out: held(after), log_ratio }
     }
 
     fn limits(confirmed: bool) -> Limits {

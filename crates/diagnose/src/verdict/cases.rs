@@ -35,6 +35,7 @@ fn lag_with(found: &mut Found, rivals: &[(&str, f64, f64)]) {
     let rivals = rivals.iter().map(|&(id, left, log_ratio)| Trial {
         guess: guess(id),
         mean_square: left,
+        before: held(4.0),
         held_out: held(left),
         log_ratio,
     });

@@ -41,8 +41,8 @@ impl Desk {
     fn tried(&self) -> Vec<&'static str> {
         self.look(|look, base| {
             let tried = look.trials(base, &Shapes::new()).expect("a look");
-            assert!(tried.is_sorted_by(|left, right| left.trial.log_ratio >= right.trial.log_ratio));
-            tried.iter().map(|tried| tried.trial.guess.id()).collect()
+            assert!(tried.is_sorted_by(|left, right| left.log_ratio >= right.log_ratio));
+            tried.iter().map(|trial| trial.guess.id()).collect()
         })
     }
 
@@ -67,12 +67,7 @@ fn trial(id: &str, log_ratio: f64) -> Trial {
     let shape = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
     let guess = CandidateEffect { effect, shape, sign: Sign::Any, beginning: Beginning::Fresh };
     let held_out = HeldOut { blocks: vec![1.0], counts: vec![1.0], floor_square: 0.0 };
-    Trial { guess, mean_square: 1.0, held_out, log_ratio }
-}
-
-fn tried(id: &str, log_ratio: f64) -> Tried {
-    let trial = trial(id, log_ratio);
-    Tried { before: trial.held_out.clone(), trial }
+    Trial { guess, mean_square: 1.0, before: held_out.clone(), held_out, log_ratio }
 }
 
 #[test]
@@ -127,11 +122,11 @@ fn beyond_doubt_it_takes_more_of_the_map_and_more_evidence() {
 
 #[test]
 fn only_trials_that_come_near_the_best_promise_anything() {
-    let look = [tried("pressure-lag", 10.0), tried("channel-delay", 2.0), tried("force-drift", 1.5)];
+    let look = [trial("pressure-lag", 10.0), trial("channel-delay", 2.0), trial("force-drift", 1.5)];
     let promising: Vec<&str> = promise(&look).map(|(id, _)| id).collect();
     assert_eq!(promising, ["pressure-lag", "channel-delay"]);
     // Where the best is hardly anything, nothing promises.
-    assert_eq!(promise(&[tried("pressure-lag", 0.29)]).count(), 0);
+    assert_eq!(promise(&[trial("pressure-lag", 0.29)]).count(), 0);
     assert_eq!(promise(&[]).count(), 0);
 }
 
