@@ -50,11 +50,6 @@ impl Effect for PressureCreep {
         ]
     }
 
-    // What drives it says how, not what.
-    fn may_end(&self, index: usize, _end: f64) -> bool {
-        index == 1
-    }
-
     fn amplitudes(&self) -> &'static [Amplitude] {
         &[
             Amplitude { name: "overstress", symbol: "g₁", unit: "1", range: (-0.5, 0.5) },
