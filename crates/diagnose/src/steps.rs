@@ -219,6 +219,35 @@ mod tests {
     }
 
     #[test]
+    fn of_many_turns_one_may_jump_as_much() {
+        // Where a recording begins, say.
+        let mut largest_n = [Some(1.0); PARTS];
+        largest_n[0] = Some(3.0);
+        assert!(stands_alone(&largest_n, 10, 3.5));
+        largest_n[4] = Some(3.0);
+        assert!(!stands_alone(&largest_n, 10, 3.5));
+        let mut few = [None; PARTS];
+        (few[0], few[3], few[6], few[9], few[12]) = (Some(3.0), Some(1.0), Some(1.0), Some(1.0), Some(1.0));
+        assert!(!stands_alone(&few, 16, 3.5));
+    }
+
+    #[test]
+    fn a_spike_beside_an_instant_is_no_jump() {
+        let (given, middle_s) = stepped(0.0);
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let mut residuals_n = setting.residuals_n(&state);
+        let range = given.track.recordings[0].clone();
+        let jump_n =
+            |residuals_n: &[f64]| jump_n(&setting, residuals_n, range.clone(), middle_s, NEAR_S).expect("both sides");
+        let before_n = jump_n(&residuals_n);
+        // A tenth of a second in which friction turned over late.
+        let late = |at: &usize| (given.track.instants[*at].moment.time_s - middle_s + 0.3).abs() < 0.05;
+        range.clone().filter(late).for_each(|at| residuals_n[at] += 40.0);
+        assert!((jump_n(&residuals_n) - before_n).abs() < 0.5, "{before_n} {}", jump_n(&residuals_n));
+    }
+
+    #[test]
     fn where_a_drive_starts_no_step_is_looked_for() {
         let (given, _) = stepped(0.0);
         let setting = given.setting();

@@ -1,9 +1,10 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 //!
-//! [`mod@beside`] is what a hypothesis is judged beside, [`mod@look`] a look at the catalogue, [`mod@worth`] what a trial must gain, [`mod@settle`] how
-//! what was taken settles with what was there.
+//! [`mod@beside`] is what a hypothesis is judged beside, [`mod@forward`] the selection itself, [`mod@look`] a look at the catalogue,
+//! [`mod@worth`] what a trial must gain, [`mod@settle`] how what was taken settles with what was there.
 
 mod beside;
+mod forward;
 mod look;
 mod settle;
 mod worth;
@@ -22,10 +23,10 @@ use crate::trial::{Shapes, Trial};
 
 use beside::kept_map;
 pub(crate) use beside::{Beside, fitting};
-use look::{FORM_AT_MOST, Look, form_square, is_strained, promise};
-use settle::{at_rest, polished, second_look, settle, without};
+use forward::{ForwardSelection, Selected};
+use look::{FORM_AT_MOST, Look, form_square};
+use settle::{at_rest, polished, without};
 pub use worth::chance;
-use worth::worth;
 
 /// Limits of a search.
 #[derive(Debug, Clone)]
@@ -151,8 +152,8 @@ pub fn search(
         Nuisance::of_recordings(track, limits.sensor_floor_n).with_reversals(track, &coordinates, model);
     let bare = setting.beside(&of_recordings);
     let base = judged(&bare, bare.fit(Vec::new(), start, model)?)?;
-    let mut beside = Beside::of(setting, &of_recordings, &coordinates, &base)?;
-    let mut best = again(&setting.beside(&beside.smooth), &base)?;
+    let beside = Beside::of(setting, &of_recordings, &coordinates, &base)?;
+    let best = again(&setting.beside(&beside.smooth), &base)?;
     let (remainder, telling_n) = {
         let mapped = setting.beside(&beside.smooth);
         let remainder = ProjectedResidual::of(&mapped, &best.state);
@@ -169,43 +170,26 @@ pub fn search(
         floor_square = floor_square.min(unnamed.held_out.mean_square());
     }
     let mut whole = best.clone();
-    let mut first = Vec::new();
-    let mut promising = Shapes::new();
-    let mut known = Shapes::new();
-    let mut looks = 0;
-    while best.state.guesses.len() < limits.max_effects {
-        let (plain, mapped) = (setting.beside(&beside.plain), setting.beside(&beside.smooth));
-        let look =
-            Look { plain: &plain, mapped: &mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
-        let tried = look.trials(&best, &known)?;
-        looked();
-        if looks == 0 {
-            first.clone_from(&tried);
-            first.extend(look.smooth_statics(&best)?);
-            first.extend(look.not_tried(&best, &first));
-        }
-        looks += 1;
-        known = promise(&tried).collect();
-        promising.extend(known.clone());
-        for trial in &tried {
-            // What a trial gains beside a free map says nothing of what a smooth one leaves.
-            let gained = trial.before.mean_square() - trial.held_out.mean_square();
-            floor_square = floor_square.min((best.held_out.mean_square() - gained).max(trial.held_out.mean_square()));
-        }
-        let next = tried
-            .iter()
-            .filter(|trial| worth(trial, !best.state.guesses.is_empty(), &whole.held_out, floor_square, limits))
-            .filter_map(|chosen| settle(&mapped, &best, chosen))
-            .find(|next| !is_strained(&mapped, next, &base));
-        let Some(next) = next else { break };
-        beside = Beside::of(setting, &of_recordings, &coordinates, &next)?;
-        let mapped = setting.beside(&beside.smooth);
-        best = again(&mapped, &next)?;
-        if looks > 1 {
-            best = second_look(&mapped, best, &seen, &promising);
-        }
-        floor_square = floor_square.min(best.held_out.mean_square());
-    }
+    let (promising, known) = (Shapes::new(), Shapes::new());
+    let mut start = Selected { best, beside, promising, known, floor_square };
+    let selection = ForwardSelection {
+        setting,
+        of_recordings: &of_recordings,
+        coordinates: &coordinates,
+        seen: &seen,
+        limits,
+        base: &base,
+        whole: &whole,
+        looked,
+    };
+    let (selected, first) = if limits.max_effects > 0 {
+        let trials = selection.look(&mut start)?;
+        let first = selection.candidates(&start, &trials)?;
+        (selection.select(start, trials)?, first)
+    } else {
+        (start, Vec::new())
+    };
+    let Selected { mut best, mut beside, promising, mut floor_square, .. } = selected;
     let odd = {
         let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
         let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };

@@ -3,6 +3,7 @@ use super::*;
 use pam_core::effects::effect;
 
 use crate::hypothesis::Sign;
+use crate::joint::HeldOut;
 use crate::rehearsal::tests::Given;
 use crate::search::judged;
 
@@ -53,6 +54,11 @@ impl Desk {
             let range_n = look.seen.force_n.1 - look.seen.force_n.0;
             (bare.held_out.mean_square() - mapped.held_out.mean_square(), Asked::of(look.limits, 0.02, range_n))
         })
+    }
+
+    /// The friction that stands for the odd part of the map.
+    fn odd_of_the_map(&self) -> Option<&'static str> {
+        self.look(|look, base| Some(look.odd_static(&again(look.mapped, base)?)?.state.guesses[0].id()))
     }
 
     /// The effect that stands for the static map.
@@ -118,6 +124,32 @@ fn an_effect_stands_for_a_map_where_it_gains_nearly_all_of_it_with_evidence() {
 fn beyond_doubt_it_takes_more_of_the_map_and_more_evidence() {
     assert!(surely_stands_for_map(97.1, 100.0, 15.1));
     assert!(!surely_stands_for_map(97.0, 100.0, 30.0) && !surely_stands_for_map(99.0, 100.0, 15.0));
+}
+
+#[test]
+fn friction_under_load_is_found_whatever_eq_11_misses_of_a_static_force() {
+    let rubbing: (&'static str, &[f64], &[f64]) = ("load-dependent-friction", &[], &[0.05]);
+    let found = |effects: &[(&'static str, &[f64], &[f64])], misfit_n: f64| {
+        let mut desk = Desk::of(effects);
+        desk.given.bend(misfit_n);
+        desk.odd_of_the_map()
+    };
+    assert_eq!(found(&[rubbing], 0.0), Some("load-dependent-friction"));
+    assert_eq!(found(&[rubbing], 15.0), Some("load-dependent-friction"));
+    assert_eq!(found(&[], 0.0), None);
+    assert_eq!(found(&[], 15.0), None);
+    // Friction of another shape is none of the load.
+    assert_eq!(found(&[("viscous-damping", &[], &[120.0])], 0.0), None);
+}
+
+#[test]
+fn what_is_excluded_stands_for_no_odd_part() {
+    let mut desk = Desk::of(&[("load-dependent-friction", &[], &[0.05])]);
+    desk.limits.excluded.push("load-dependent-friction".to_owned());
+    assert_eq!(desk.odd_of_the_map(), None);
+    desk.limits.excluded.clear();
+    desk.limits.matters_above_n = Some(40.0);
+    assert_eq!(desk.odd_of_the_map(), None, "it does not matter");
 }
 
 #[test]
