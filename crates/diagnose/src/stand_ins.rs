@@ -177,3 +177,6 @@ mod tests {
 
 #[cfg(test)]
 mod cases;
+
+#[cfg(test)]
+mod edges;

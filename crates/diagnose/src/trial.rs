@@ -352,3 +352,6 @@ mod tests {
 
 #[cfg(test)]
 mod cases;
+
+#[cfg(test)]
+mod edges;

@@ -159,3 +159,6 @@ mod tests {
 
 #[cfg(test)]
 mod cases;
+
+#[cfg(test)]
+mod edges;

@@ -89,3 +89,6 @@ mod tests {
         assert!(!keeps_map(0.0));
     }
 }
+
+#[cfg(test)]
+mod cases;

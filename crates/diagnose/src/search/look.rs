@@ -245,3 +245,6 @@ pub(super) fn promise(tried: &[Trial]) -> impl Iterator<Item = (&'static str, Ve
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod edges;

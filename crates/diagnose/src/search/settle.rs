@@ -235,3 +235,6 @@ mod tests {
         assert!(shape[1] == 0.0 && (shape[0] - 0.06).abs() < 1e-12, "{shape:?}");
     }
 }
+
+#[cfg(test)]
+mod cases;

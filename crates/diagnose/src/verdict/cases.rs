@@ -11,7 +11,7 @@ use crate::state::Setting;
 use crate::trial::Trial;
 
 /// A search that took nothing, in a muscle that lacks nothing.
-fn nothing() -> Found {
+pub(super) fn nothing() -> Found {
     let mut given = Given::of(&["multisine"], &[]);
     given.disturb();
     let setting = Setting { floor_square: 0.09, ..given.setting() };
@@ -30,7 +30,7 @@ fn held(square: f64) -> HeldOut {
 
 /// `found` with a lag that leaves 1 of 4 N², with rivals that leave so much of it, of so much evidence: those of the lag are
 /// eight times ln 4.
-fn lag_with(found: &mut Found, rivals: &[(&str, f64, f64)]) {
+pub(super) fn lag_with(found: &mut Found, rivals: &[(&str, f64, f64)]) {
     found.best.state.guesses = vec![guess("pressure-lag")];
     let rivals = rivals.iter().map(|&(id, left, log_ratio)| Trial {
         guess: guess(id),
@@ -43,7 +43,7 @@ fn lag_with(found: &mut Found, rivals: &[(&str, f64, f64)]) {
 }
 
 /// A mismatch of 10 N over a floor of 1 N, all of it explained.
-const SIZES: Sizes = Sizes {
+pub(super) const SIZES: Sizes = Sizes {
     floor_n: 1.0,
     mismatch_n: 10.0,
     left_n: 0.0,
