@@ -213,11 +213,6 @@ pub trait Effect: Sync {
         &[]
     }
 
-    /// Whether what eq. 11 misses of any muscle looks like it: another stiffness, another shape of the ends.
-    fn is_like_the_base(&self) -> bool {
-        false
-    }
-
     /// Whether what it has changed stays: it comes to its end, and recordings after that show nothing of it.
     fn is_permanent(&self) -> bool {
         !self.keeps().is_empty()

@@ -29,14 +29,6 @@ pub(super) const FORM_AT_MOST: f64 = 0.0135;
 /// right ones the smallest had 2.5. Where eq. 11 strains beside the effect, it takes more than any healthy muscle has.
 const THROUGH_THE_BASE: f64 = 2.0;
 
-/// Share of what the map takes up, and evidence, beyond which an effect that no misfit of eq. 11 looks like needs no larger a map than
-/// the sensors leave. Of 125 healthy muscles that these were chosen by, in 60 of which eq. 11 holds nowhere, and 135 others, none calls
-/// up one that is not there with both; twice the share that is missing, or half the evidence, would call up one and two. Of 100 fresh
-/// worlds two got a lock-up beside the right name.
-const SURELY_OF_THE_MAP: f64 = 0.97;
-/// See [`SURELY_OF_THE_MAP`].
-const SURELY_LOG_RATIO: f64 = 15.0;
-
 /// Evidence that friction needs beside the even part of the static map, and share of what the odd part takes up: friction has other
 /// forms than that of its page. Of 176 cases that these were chosen by, those without such friction gave it 6.0 at most; of seven with it
 /// six gave it 27 and more, with shares of 0.7 to 1.
@@ -57,8 +49,6 @@ struct Asked {
     least: f64,
     /// Of one beside which eq. 11 strains: more than any healthy muscle has.
     most: f64,
-    /// Of one that surely is no misfit of eq. 11: what the sensors leave, or what matters.
-    sure: f64,
 }
 
 impl Asked {
@@ -66,10 +56,8 @@ impl Asked {
     fn of(limits: &Limits, floor_square: f64, range_n: f64) -> Self {
         let full_floor = floor_square + limits.sensor_floor_n.powi(2);
         let matters = limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
-        let sure = limits.matters_above_n.map_or(limits.sensor_floor_n.powi(2), |limit_n| limit_n * limit_n);
         let [form, most] = [FORM_SHARE, FORM_AT_MOST].map(|share| form_square(limits.sensor_floor_n, range_n, share));
-        let least = matters.max(form);
-        Self { least, most, sure: sure.min(least) }
+        Self { least: matters.max(form), most }
     }
 
     /// Whether a map that takes up `map` is enough for an effect; `sees` where that acts through eq. 11, `strained` where eq. 11
@@ -83,11 +71,6 @@ impl Asked {
 /// Whether a static effect that gains `gained` where the map takes up `map`, both in N², stands for it.
 fn stands_for_map(gained: f64, map: f64, log_ratio: f64) -> bool {
     gained > OF_THE_MAP * map && log_ratio > LEAST_LOG_RATIO
-}
-
-/// Whether it does so beyond doubt.
-fn surely_stands_for_map(gained: f64, map: f64, log_ratio: f64) -> bool {
-    gained > SURELY_OF_THE_MAP * map && log_ratio > SURELY_LOG_RATIO
 }
 
 /// What every look at the catalogue shares.
@@ -200,22 +183,21 @@ impl Look<'_> {
         let map = bare.held_out.mean_square() - with_map.held_out.mean_square();
         let (low_n, high_n) = self.seen.force_n;
         let asked = Asked::of(self.limits, floor_square, high_n - low_n);
-        if map < asked.sure {
+        if map < asked.least {
             return None;
         }
         let statics = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static() && !effect.is_odd();
         let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &statics);
         let stands = |trial: &&Trial| {
             let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
-            let is_sure = !trial.guess.effect.is_like_the_base() && surely_stands_for_map(gained, map, trial.log_ratio);
-            is_sure || map >= asked.least && stands_for_map(gained, map, trial.log_ratio)
+            stands_for_map(gained, map, trial.log_ratio)
         };
         let named: Vec<(bool, Judged)> = trials
             .iter()
             .filter(stands)
             .filter_map(|trial| settle(&beside, &bare, trial))
             .map(|named| (is_strained(&beside, &named, base), named))
-            .filter(|(strained, named)| (map < asked.least && !strained) || asked.is_met(map, sees(named), *strained))
+            .filter(|(strained, named)| asked.is_met(map, sees(named), *strained))
             .collect();
         let at_ease = named.iter().find(|(strained, _)| !strained).or(named.first());
         again(self.mapped, &at_ease?.1)

@@ -39,10 +39,6 @@ impl Effect for EndTaper {
         true
     }
 
-    fn is_like_the_base(&self) -> bool {
-        true
-    }
-
     fn kind(&self) -> Kind {
         Kind::Muscle
     }

@@ -29,10 +29,6 @@ impl Effect for SeriesCompliance {
         true
     }
 
-    fn is_like_the_base(&self) -> bool {
-        true
-    }
-
     fn kind(&self) -> Kind {
         Kind::Fixture
     }
