@@ -2,13 +2,13 @@
 # /// script
 # dependencies = ["numpy>=2", "scipy>=1.14"]
 # ///
-"""Writes the MATLAB files that crates/core/tests/reading reads, by SciPy: an independent writer.  make-mat-fixtures.py"""
+"""Writes the MATLAB files that crates/recording/tests/reading reads, by SciPy: an independent writer.  make-mat-fixtures.py"""
 import pathlib
 
 import numpy as np
 from scipy.io import savemat
 
-FOLDER = pathlib.Path(__file__).parent.parent / "crates/core/tests/reading/data"
+FOLDER = pathlib.Path(__file__).parent.parent / "crates/recording/tests/reading/data"
 
 index = np.arange(12)
 time_s = 0.01 * index

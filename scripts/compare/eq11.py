@@ -1,4 +1,4 @@
-"""Eq. 11 in NumPy, as the README states it; see crates/core/src/force for the derivations.
+"""Eq. 11 in NumPy, as the README states it; see crates/muscle/src/force for the derivations.
 
 Written anew from the equations, so that no peer has to call the programs that it is compared with. `compare` checks
 it against `pam-predict` to 1e-6 of the largest force before anything is timed. Strand friction is left out: a fit

@@ -8,5 +8,5 @@ mod tables;
 mod track;
 
 fn main() -> std::process::ExitCode {
-    pam_cli::main_with_schema::<args::Args>(pam_core::artifact::schemas::METRICS, run::run)
+    pam_cli::main_with_schema::<args::Args>(pam_artifact::schemas::METRICS, run::run)
 }

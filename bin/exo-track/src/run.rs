@@ -3,10 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
+use pam_artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool};
 use pam_cli::{Console, Output, OutputError, Verdict, pretty_json, publish, write_example};
-use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool, sha256_hex};
-use pam_core::effects::AugmentedModel;
-use pam_core::muscle::Muscle;
 use pam_exo::artifact::{ArmMetrics, MetricsArtifact, SCHEMA, TrialMetrics, is_the_papers, paper};
 use pam_exo::config::{LiftConfig, LiftPlan};
 use pam_exo::inverse::{ExactInverse, Inverse};
@@ -17,6 +15,9 @@ use pam_exo::simulation::Simulation;
 use pam_exo::study::{Study, run_study};
 use pam_exo::uncertainty::Uncertainty;
 use pam_inverse_model::InverseNetwork;
+use pam_muscle::Muscle;
+use pam_muscle::effects::AugmentedModel;
+use pam_recording::sha256_hex;
 use pam_report::PictureFormat;
 
 use crate::args::Args;

@@ -6,5 +6,5 @@ mod run;
 mod truth;
 
 fn main() -> std::process::ExitCode {
-    pam_cli::main_with_schema::<args::Args>(pam_core::artifact::schemas::BENCH_TRUTH, run::run)
+    pam_cli::main_with_schema::<args::Args>(pam_artifact::schemas::BENCH_TRUTH, run::run)
 }

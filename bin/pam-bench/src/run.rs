@@ -4,9 +4,10 @@ use std::io::Write as _;
 use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow};
+use pam_artifact::{Input, InputRole};
 use pam_cli::{Console, Output, OutputError, Verdict, finish_all, nearest};
-use pam_core::artifact::{Input, InputRole, sha256_hex};
-use pam_core::muscle::MuscleFile;
+use pam_muscle::MuscleFile;
+use pam_recording::sha256_hex;
 use pam_virtual_bench::bench::BenchError;
 use pam_virtual_bench::catalogue::EFFECTS;
 use pam_virtual_bench::concealed::ConcealedError;

@@ -1,7 +1,7 @@
 //! `pam-bench-truth/1`: what stands behind a log of the bench and no logger sees.
 
-use pam_core::artifact::{Input, Tool};
-use pam_core::muscle::Muscle;
+use pam_artifact::{Input, Tool};
+use pam_muscle::Muscle;
 use pam_virtual_bench::draw::{DrawnParameter, Place};
 use pam_virtual_bench::sensors::{Channel, Clock, Sensors};
 use pam_virtual_bench::{Bench, ConcealedEffect, Parameters, Protocol};
@@ -203,13 +203,13 @@ impl Truth {
 mod tests {
     use super::*;
 
-    use pam_core::artifact::schemas;
+    use pam_artifact::schemas;
 
     #[test]
     fn the_published_schema_is_that_of_the_truth() {
         let text = format!("{:#}\n", schemars::schema_for!(Truth).to_value());
         if std::env::var_os("PAM_WRITE_SCHEMAS").is_some() {
-            let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/core/schemas/");
+            let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/artifact/schemas/");
             std::fs::write(format!("{folder}pam-bench-truth-1.json"), text).expect("a writable folder");
         } else {
             assert!(schemas::BENCH_TRUTH == text, "the published schema is stale; run scripts/schemas");

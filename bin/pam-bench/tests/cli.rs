@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The published schema.
-const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-bench-truth-1.json");
+const SCHEMA: &str = include_str!("../../../crates/artifact/schemas/pam-bench-truth-1.json");
 
 fn configs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs")

@@ -5,5 +5,5 @@ mod run;
 mod tables;
 
 fn main() -> std::process::ExitCode {
-    pam_cli::main_with_schema::<args::Args>(pam_core::artifact::schemas::COMPARISON, run::run)
+    pam_cli::main_with_schema::<args::Args>(pam_artifact::schemas::COMPARISON, run::run)
 }

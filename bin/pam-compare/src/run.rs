@@ -1,11 +1,11 @@
 //! Two models and recordings in, a comparison out.
 
 use anyhow::ensure;
+use pam_artifact::comparison::{CompareConfig, ComparisonArtifact, Outcome, SCHEMA};
+use pam_artifact::{Input, InputRole, ModelArtifact, Tool, readable_json};
 use pam_cli::{Output, Verdict, publish, read_recordings};
 use pam_comparison::blocks::Resampling;
 use pam_comparison::{compare, parameters};
-use pam_core::artifact::comparison::{CompareConfig, ComparisonArtifact, Outcome, SCHEMA};
-use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, readable_json};
 
 use crate::args::Args;
 use crate::tables;

@@ -1,8 +1,8 @@
 //! Tables and messages for the terminal.
 
+use pam_artifact::ComparisonArtifact;
+use pam_artifact::comparison::{ComparedParameter, Difference, Outcome};
 use pam_comparison::blocks::FEWEST_BLOCKS;
-use pam_core::artifact::ComparisonArtifact;
-use pam_core::artifact::comparison::{ComparedParameter, Difference, Outcome};
 use pam_report::Table;
 use pam_report::number::{engineering, engineering_with_stderr, probability, significant};
 use pam_report::text::{told_apart, wrapped};

@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 /// A model whose every value is known: gas and a constant alone.
 const MODEL: &str = include_str!("../../pam-predict/tests/data/model.json");
 /// The published schema.
-const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-comparison-1.json");
+const SCHEMA: &str = include_str!("../../../crates/artifact/schemas/pam-comparison-1.json");
 
 /// A folder with two models and a recording that follows the second.
 struct Desk {
@@ -125,7 +125,7 @@ fn a_short_recording_says_that_it_is_too_short() {
 #[test]
 fn who_was_fitted_to_a_recording_has_an_advantage_and_that_is_said() {
     let desk = Desk::new();
-    let sha256 = pam_core::artifact::sha256_hex(recording(4.0, 4000).as_bytes());
+    let sha256 = pam_recording::sha256_hex(recording(4.0, 4000).as_bytes());
     let mut model: serde_json::Value = serde_json::from_str(&with_k3("4.0")).unwrap();
     let input = serde_json::json!({ "path": "log.csv", "sha256": sha256, "role": "estimation" });
     model["inputs"].as_array_mut().unwrap().push(input);
@@ -168,5 +168,7 @@ fn bad_input_gets_one_line_and_no_file() {
 fn the_published_schema_is_the_one_that_the_program_prints() {
     let output = Desk::new().run("--schema");
     assert_eq!(String::from_utf8(output.stdout).unwrap(), SCHEMA, "run scripts/schemas");
-    assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/core/schemas/pam-comparison-1.json").is_file());
+    assert!(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/artifact/schemas/pam-comparison-1.json").is_file()
+    );
 }

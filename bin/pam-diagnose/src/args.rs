@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Parser;
+use pam_artifact::diagnosis::DiagnoseConfig;
 use pam_cli::{ReadArgs, RunArgs};
-use pam_core::artifact::diagnosis::DiagnoseConfig;
 use pam_diagnosis::diagnose::MAX_EFFECTS;
 
 /// Diagnose where a force model and recordings differ, and which physics was left out.

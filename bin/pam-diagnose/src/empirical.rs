@@ -1,9 +1,9 @@
 //! Terms without a name for a person: on the terminal and in the report.
 
-use pam_core::artifact::DiagnosisArtifact;
-use pam_core::artifact::diagnosis::{Empirical, EmpiricalTerm};
-use pam_core::effects::Sentence;
-use pam_core::effects::sentence::{Curve, Driver, Recall};
+use pam_artifact::DiagnosisArtifact;
+use pam_artifact::diagnosis::{Empirical, EmpiricalTerm};
+use pam_muscle::effects::Sentence;
+use pam_muscle::effects::sentence::{Curve, Driver, Recall};
 use pam_report::number::{engineering, engineering_with_stderr, significant};
 use pam_report::text::hanging;
 use pam_report::{PageEmpirical, PageTerm};

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use anyhow::Context as _;
 use pam_cli::{Console, Output, Verdict, publish, write_file};
-use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::{Effect, Page, Symbol};
 use pam_diagnosis::explain::{Driven, signature};
+use pam_muscle::Coordinate;
+use pam_muscle::effects::{Effect, Page, Symbol};
 use pam_report::text::{hanging, wrapped};
 use pam_report::{PictureFormat, SignatureFigure, SignaturePanel, SignatureSeries, Table, signature_figure};
 

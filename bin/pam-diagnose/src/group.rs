@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure};
+use pam_artifact::group::{GroupArtifact, GroupMuscle, HeldOutShare, RigEffect, Says};
+use pam_artifact::group_file::{GroupMember, group_members};
+use pam_artifact::{Input, InputRole, ModelArtifact, Tool, readable_json};
 use pam_cli::{Console, Output, publish, read_recordings};
-use pam_core::artifact::group::{GroupArtifact, GroupMuscle, HeldOutShare, RigEffect, Says};
-use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, readable_json, sha256_hex};
-use pam_core::group::{GroupMember, group_members};
-use pam_core::spelling::unreadable;
 use pam_diagnosis::artifact::Head;
 use pam_diagnosis::diagnose::{Request, check};
 use pam_diagnosis::group::diagnose_group;
+use pam_recording::sha256_hex;
+use pam_recording::spelling::unreadable;
 use pam_report::Table;
 use pam_report::number::{engineering, engineering_with_stderr, significant};
 use pam_report::text::wrapped;

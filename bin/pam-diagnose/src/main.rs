@@ -17,5 +17,5 @@ mod tables;
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> std::process::ExitCode {
-    pam_cli::main_with_schema::<args::Args>(pam_core::artifact::schemas::DIAGNOSIS, run::run)
+    pam_cli::main_with_schema::<args::Args>(pam_artifact::schemas::DIAGNOSIS, run::run)
 }

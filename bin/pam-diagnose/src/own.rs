@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use anyhow::anyhow;
-use pam_core::artifact::{Input, InputRole, sha256_hex};
-use pam_core::effects::sentence::custom_effects;
-use pam_core::effects::{CATALOGUE, Effect, Page, effect};
-use pam_core::spelling::unreadable;
+use pam_artifact::{Input, InputRole};
+use pam_muscle::effects::sentence::custom_effects;
+use pam_muscle::effects::{CATALOGUE, Effect, Page, effect};
+use pam_recording::sha256_hex;
+use pam_recording::spelling::unreadable;
 
 /// Effects of `--effects`.
 #[derive(Debug, Default)]

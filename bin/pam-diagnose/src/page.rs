@@ -1,12 +1,13 @@
 //! The report of a diagnosis, from the artifact and the samples behind it.
 
-use pam_core::artifact::diagnosis::{AsGiven, BeforeAfter, Coordinate, Evidence, NamedEffect, Region, Verdict};
-use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
-use pam_core::artifact::{DiagnosisArtifact, InputRole, ModelArtifact};
-use pam_core::effects::page::Confusion;
-use pam_core::effects::symbols::{symbol_of_base, symbol_of_effect};
-use pam_core::effects::{CATALOGUE, Symbol};
+use pam_artifact::diagnosis::{AsGiven, BeforeAfter, Evidence, NamedEffect, Region, Verdict};
+use pam_artifact::model::{ParameterEntry, ParameterStatus};
+use pam_artifact::{DiagnosisArtifact, InputRole, ModelArtifact};
 use pam_diagnosis::traces::Trace;
+use pam_muscle::Coordinate;
+use pam_muscle::effects::page::Confusion;
+use pam_muscle::effects::symbols::{symbol_of_base, symbol_of_effect};
+use pam_muscle::effects::{CATALOGUE, Symbol};
 use pam_report::{
     DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageEffect, PageEstimate,
     PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter,

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
+use pam_artifact::diagnosis::Verdict;
+use pam_artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
 use pam_cli::{Console, Output, pretty_json, publish, read_recordings};
-use pam_core::artifact::diagnosis::Verdict;
-use pam_core::artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
 use pam_diagnosis::artifact::{Agreement, Head};
 use pam_diagnosis::diagnose::{Diagnosis, Request, check, diagnose_observed};
 use pam_diagnosis::traces::traces;

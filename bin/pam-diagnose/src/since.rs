@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure};
+use pam_artifact::change::{Change, ChangeArtifact, ChangeConfig, ChangeVerdict, Compared, SCHEMA};
+use pam_artifact::{ArtifactError, Input, InputRole, ModelArtifact, Tool, readable_json};
 use pam_cli::{Console, Output, publish, read_recordings};
-use pam_core::artifact::change::{Change, ChangeArtifact, ChangeConfig, ChangeVerdict, Compared, SCHEMA};
-use pam_core::artifact::{ArtifactError, Input, InputRole, ModelArtifact, Tool, readable_json};
 use pam_diagnosis::since::{LaterTrace, Request, changes, check, words};
 use pam_report::number::{engineering, engineering_with_stderr, significant};
 use pam_report::text::wrapped;

@@ -1,8 +1,8 @@
 //! Tables and messages for the terminal.
 
-use pam_core::artifact::DiagnosisArtifact;
-use pam_core::artifact::diagnosis::{BeforeAfter, Evidence, Region, Residual, Verdict};
-use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
+use pam_artifact::DiagnosisArtifact;
+use pam_artifact::diagnosis::{BeforeAfter, Evidence, Region, Residual, Verdict};
+use pam_artifact::model::{ParameterEntry, ParameterStatus};
 use pam_diagnosis::words;
 use pam_report::Table;
 use pam_report::number::{engineering, engineering_with_stderr, probability, significant};

@@ -6,13 +6,13 @@ mod desk;
 
 use std::sync::OnceLock;
 
-use pam_core::artifact::GroupArtifact;
-use pam_core::artifact::group::Says;
+use pam_artifact::GroupArtifact;
+use pam_artifact::group::Says;
 use pam_virtual_bench::{Concealed, Parameters};
 
 use desk::{Desk, logs};
 
-const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-group-1.json");
+const SCHEMA: &str = include_str!("../../../crates/artifact/schemas/pam-group-1.json");
 
 /// Parameters that make a muscle of the nominal one.
 type Change = fn(&mut Parameters);

@@ -6,12 +6,12 @@ mod desk;
 
 use std::sync::OnceLock;
 
-use pam_core::artifact::change::{ChangeArtifact, ChangeKind, ChangeVerdict, Compared};
+use pam_artifact::change::{ChangeArtifact, ChangeKind, ChangeVerdict, Compared};
 use pam_virtual_bench::{Concealed, Parameters};
 
 use desk::Desk;
 
-const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-change-1.json");
+const SCHEMA: &str = include_str!("../../../crates/artifact/schemas/pam-change-1.json");
 const THEN: &str = "then-minor-loops.csv then-isobaric-triangles.csv then-isometric-ramps.csv";
 const NOW: &str = "now-minor-loops.csv now-isobaric-triangles.csv now-isometric-ramps.csv";
 

@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
+use pam_artifact::model::Domain;
+use pam_artifact::{Input, InputRole, InverseArtifact, ModelArtifact};
 use pam_cli::{Console, Output, Verdict, ensure_inverse_of, publish};
-use pam_core::artifact::model::Domain;
-use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact};
-use pam_core::effects::{AugmentedModel, Kind, Role};
-use pam_core::recording::ReadOptions;
 use pam_deployment::grid::Grid;
 use pam_deployment::vectors::{self, Vector};
 use pam_deployment::{c, mujoco, simulink};
 use pam_identification::predict::{prepare, prepare_plausible};
 use pam_inverse_model::InverseNetwork;
+use pam_muscle::effects::{AugmentedModel, Kind, Role};
+use pam_recording::ReadOptions;
 
 use crate::args::Args;
 

@@ -5,5 +5,5 @@ mod page;
 mod run;
 
 fn main() -> std::process::ExitCode {
-    pam_cli::main_with_schema::<args::Args>(pam_core::artifact::schemas::FLEET_PLAN, run::run)
+    pam_cli::main_with_schema::<args::Args>(pam_artifact::schemas::FLEET_PLAN, run::run)
 }

@@ -1,6 +1,6 @@
 //! The page of a fleet, from its survey.
 
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::diagnosis::Verdict;
 use pam_fleet_survey::change::Change;
 use pam_fleet_survey::control::Chart;
 use pam_fleet_survey::groups::GroupShift;

@@ -1,8 +1,8 @@
 //! Table and results in, plan, sheet and page out.
 
 use anyhow::Context as _;
+use pam_artifact::{Tool, readable_json};
 use pam_cli::{Console, Output, Verdict};
-use pam_core::artifact::{Tool, readable_json};
 use pam_fleet_survey::plan::FleetPlan;
 use pam_fleet_survey::sheet::write_sheet;
 use pam_fleet_survey::survey::Survey;

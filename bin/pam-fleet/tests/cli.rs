@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 /// The published schema.
-const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-fleet-plan-1.json");
+const SCHEMA: &str = include_str!("../../../crates/artifact/schemas/pam-fleet-plan-1.json");
 /// A model whose parameters are known.
 const MODEL: &str = include_str!("../../pam-predict/tests/data/model.json");
 /// Muscles of the fleet: six on each of two rigs.

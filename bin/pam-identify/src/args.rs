@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
+use pam_artifact::model::{BladderLaw, FrictionLaw, Loss};
 use pam_cli::{ReadArgs, RunArgs};
-use pam_core::artifact::model::{BladderLaw, FrictionLaw, Loss};
-use pam_core::direction::Standstill;
-use pam_core::force::{Form, Parameter};
-use pam_core::spelling::number;
+use pam_muscle::direction::Standstill;
+use pam_muscle::force::{Form, Parameter};
+use pam_recording::spelling::number;
 
 use crate::shard_args::ShardArgs;
 

@@ -1,6 +1,6 @@
 //! The figure of a fit, from what was found.
 
-use pam_core::artifact::ModelArtifact;
+use pam_artifact::ModelArtifact;
 use pam_identification::identify::Identified;
 use pam_report::{FitFigure, FitRecording, Role, SwarmStart, fit_figure};
 
@@ -37,8 +37,8 @@ pub(crate) fn svg(found: &Identified, artifact: &ModelArtifact) -> anyhow::Resul
         .collect();
     let starts = found.convergence_n().into_iter().zip(&artifact.search.starts);
     let form = match artifact.form {
-        pam_core::force::Form::Corrected => "eq. 11 fitted",
-        pam_core::force::Form::AsPrinted => "eq. 11 as printed, fitted",
+        pam_muscle::force::Form::Corrected => "eq. 11 fitted",
+        pam_muscle::force::Form::AsPrinted => "eq. 11 as printed, fitted",
     };
     let muscle = artifact.muscle_title();
     let mut letters = muscle.chars();

@@ -8,5 +8,5 @@ mod shards;
 mod tables;
 
 fn main() -> std::process::ExitCode {
-    pam_cli::main_with_schema::<args::Args>(pam_core::artifact::schemas::MODEL, run::run)
+    pam_cli::main_with_schema::<args::Args>(pam_artifact::schemas::MODEL, run::run)
 }

@@ -3,17 +3,17 @@
 use std::path::Path;
 
 use anyhow::{Context as _, ensure};
+use pam_artifact::model::Assumed;
+use pam_artifact::{Input, InputRole, ModelArtifact, Tool};
 use pam_cli::{Console, Output, Verdict, publish, read_recordings, write_example};
-use pam_core::artifact::model::Assumed;
-use pam_core::artifact::{Input, InputRole, ModelArtifact, Tool, sha256_hex};
-use pam_core::force::Form;
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::Recording;
 use pam_identification::faults::apart::{self, Apart};
 use pam_identification::faults::{disagree, noise, reading, shaken, spikes, twice, zero};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
+use pam_muscle::MuscleFile;
+use pam_muscle::force::Form;
+use pam_recording::{Recording, sha256_hex};
 use pam_report::PictureFormat;
 
 use crate::args::{Args, BladderArg, Example, FormArg, FrictionArg};

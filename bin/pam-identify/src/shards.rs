@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use anyhow::{Context as _, ensure};
+use pam_artifact::summary::Shard;
+use pam_artifact::{AgreementArtifact, Input, InputRole, SummaryArtifact};
 use pam_cli::{Console, Output, Verdict, publish, read_recordings};
-use pam_core::artifact::summary::Shard;
-use pam_core::artifact::{AgreementArtifact, Input, InputRole, SummaryArtifact, sha256_hex};
-use pam_core::force::Form;
-use pam_core::muscle::MuscleFile;
 use pam_identification::shards::{Head, Step, advance, summarize};
+use pam_muscle::MuscleFile;
+use pam_muscle::force::Form;
+use pam_recording::sha256_hex;
 
 use crate::args::{Args, FormArg, LossArg};
 use crate::run::{read_muscle, request, tool, verdict};

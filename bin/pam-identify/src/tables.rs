@@ -1,9 +1,9 @@
 //! Tables and messages for the terminal.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::model::{FitStatistics, ParameterEntry, ParameterStatus};
-use pam_core::quality::{ChannelQuality, RecordingQuality};
+use pam_artifact::ModelArtifact;
+use pam_artifact::model::{FitStatistics, ParameterEntry, ParameterStatus};
 use pam_identification::prepare::Gated;
+use pam_recording::quality::{ChannelQuality, RecordingQuality};
 use pam_report::Table;
 use pam_report::number::{engineering, significant, with_stderr};
 use pam_report::text::{told_apart, wrapped};
@@ -268,8 +268,8 @@ pub(crate) fn forms(first: &ModelArtifact, second: &ModelArtifact) -> String {
             .collect();
         table.row([
             match artifact.form {
-                pam_core::force::Form::Corrected => "corrected".to_owned(),
-                pam_core::force::Form::AsPrinted => "as printed".to_owned(),
+                pam_muscle::force::Form::Corrected => "corrected".to_owned(),
+                pam_muscle::force::Form::AsPrinted => "as printed".to_owned(),
             },
             significant(artifact.fit.estimation.rmse_n, 4),
             artifact.fit.validation.map_or_else(|| "-".to_owned(), |statistics| significant(statistics.rmse_n, 4)),

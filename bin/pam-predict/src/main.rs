@@ -6,5 +6,5 @@ mod metrics;
 mod run;
 
 fn main() -> std::process::ExitCode {
-    pam_cli::main_with_schema::<args::Args>(pam_core::artifact::schemas::PREDICTION, run::run)
+    pam_cli::main_with_schema::<args::Args>(pam_artifact::schemas::PREDICTION, run::run)
 }

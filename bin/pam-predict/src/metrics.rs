@@ -1,7 +1,7 @@
 //! Metrics of a prediction, for other programs.
 
-use pam_core::artifact::prediction::{PredictConfig, PredictionArtifact, SCHEMA};
-use pam_core::artifact::{Input, Tool};
+use pam_artifact::prediction::{PredictConfig, PredictionArtifact, SCHEMA};
+use pam_artifact::{Input, Tool};
 use pam_identification::prediction::Prediction;
 use pam_identification::prepare::Prepared;
 

@@ -3,11 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow, ensure};
+use pam_artifact::model::FitStatistics;
+use pam_artifact::{Input, InputRole, ModelArtifact, readable_json};
 use pam_cli::{Console, Output, OutputError, Verdict, publish};
-use pam_core::artifact::model::FitStatistics;
-use pam_core::artifact::{Input, InputRole, ModelArtifact, readable_json};
-use pam_core::effects::{AugmentedModel, Kind};
-use pam_core::recording::ReadOptions;
 use pam_identification::band::PredictiveBand;
 use pam_identification::evaluate::{NoForceAt, evaluate_augmented, noise_floor_n, without_force};
 use pam_identification::faults::{noise, reading, spikes, twice};
@@ -15,6 +13,8 @@ use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare
 use pam_identification::prediction::{Prediction, predict};
 use pam_identification::prepare::Prepared;
 use pam_identification::report::out_of_range;
+use pam_muscle::effects::{AugmentedModel, Kind};
+use pam_recording::ReadOptions;
 use pam_report::PictureFormat;
 
 use crate::args::Args;

@@ -347,7 +347,7 @@ fn a_limit_is_a_number_above_zero() {
 }
 
 /// The published schema.
-const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-prediction-1.json");
+const SCHEMA: &str = include_str!("../../../crates/artifact/schemas/pam-prediction-1.json");
 
 #[test]
 fn metrics_obey_their_schema_and_tell_counted_from_all_samples() {

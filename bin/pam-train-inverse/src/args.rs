@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
+use pam_artifact::inverse::{Activation, Method, TrainConfig, Update};
 use pam_cli::{ReadArgs, RunArgs};
-use pam_core::artifact::inverse::{Activation, Method, TrainConfig, Update};
 use pam_inverse_model::train::defaults;
 
 /// Train the inverse of an identified muscle: force, length and direction to pressure.

@@ -1,7 +1,7 @@
 //! The figure of an inverse, from what was trained.
 
-use pam_core::artifact::InverseArtifact;
-use pam_core::artifact::inverse::RegionErrors;
+use pam_artifact::InverseArtifact;
+use pam_artifact::inverse::RegionErrors;
 use pam_inverse_model::ExactInverse;
 use pam_inverse_model::branch::slope_n_per_pa;
 use pam_inverse_model::coverage::{Kind, map};

@@ -6,5 +6,5 @@ mod run;
 mod tables;
 
 fn main() -> std::process::ExitCode {
-    pam_cli::main_with_schema::<args::Args>(pam_core::artifact::schemas::INVERSE, run::run)
+    pam_cli::main_with_schema::<args::Args>(pam_artifact::schemas::INVERSE, run::run)
 }

@@ -4,10 +4,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail, ensure};
+use pam_artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool};
 use pam_cli::{Console, Output, Verdict, pretty_json, publish, read_recordings};
-use pam_core::artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool};
-use pam_core::recording::{ReadOptions, Recording, first_shared};
 use pam_inverse_model::report::{Outcome, Prepared};
+use pam_recording::{ReadOptions, Recording, first_shared};
 use pam_report::PictureFormat;
 
 use crate::args::{ActivationArg, Args};

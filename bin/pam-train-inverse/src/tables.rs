@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use pam_core::artifact::InverseArtifact;
-use pam_core::artifact::inverse::{Ended, ErrorStatistics, RegionErrors};
+use pam_artifact::InverseArtifact;
+use pam_artifact::inverse::{Ended, ErrorStatistics, RegionErrors};
 use pam_report::Table;
 use pam_report::number::significant;
 use pam_report::text::wrapped;

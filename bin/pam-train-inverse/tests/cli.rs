@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use model::{Change, folder_with, model_json};
-use pam_core::artifact::InverseArtifact;
+use pam_artifact::InverseArtifact;
 use pam_inverse_model::InverseNetwork;
 
 /// The published schema.
-const SCHEMA: &str = include_str!("../../../crates/core/schemas/pam-inverse-1.json");
+const SCHEMA: &str = include_str!("../../../crates/artifact/schemas/pam-inverse-1.json");
 
 /// Options that make a training short.
 const SHORT: [&str; 6] = ["--points", "900", "--starts", "1", "--judge-points", "2000"];

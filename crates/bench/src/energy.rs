@@ -32,7 +32,7 @@
 
 use std::f64::consts::PI;
 
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
 
 use crate::dual::Dual;
 

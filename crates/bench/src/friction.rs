@@ -23,7 +23,7 @@
 
 use std::f64::consts::PI;
 
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
 
 use crate::mechanism::{Mechanism, Moment};
 use crate::parameters::Parameters;

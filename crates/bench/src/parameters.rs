@@ -102,7 +102,7 @@ pub enum ParameterError {
         name: String,
     },
     /// A value that no muscle has.
-    #[error("{name} = {} is outside {lowest} to {highest}; values are in SI", pam_core::spelling::number(*value))]
+    #[error("{name} = {} is outside {lowest} to {highest}; values are in SI", pam_recording::spelling::number(*value))]
     OutOfRange {
         /// Parameter.
         name: String,

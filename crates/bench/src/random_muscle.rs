@@ -1,6 +1,6 @@
 //! A muscle drawn at random, of the kind that is made by hand.
 
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
 use rand::RngExt;
 
 use crate::draw::source;

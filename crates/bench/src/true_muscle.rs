@@ -9,7 +9,7 @@
 //! [`friction`](crate::friction). `k₁` and `k₂` are what end caps and strand thickness leave of the ideal
 //! braid; `k₃` is a constant force.
 
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
 
 use crate::dual::{Dual, derivative};
 use crate::energy::Energies;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
 use pam_virtual_bench::bench::BenchError;
 use pam_virtual_bench::parameters::{NYLON_MODULUS_PA, Parameters};
 use pam_virtual_bench::protocol::{ALL, ProtocolError};

@@ -2,7 +2,7 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use pam_core::artifact::schemas;
+use pam_artifact::schemas;
 
 /// Option, and kind of schema, of the file that says what columns mean.
 const CHANNELS: &str = "channels";

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{bail, ensure};
-use pam_core::artifact::{Input, InputRole, InverseArtifact};
+use pam_artifact::{Input, InputRole, InverseArtifact};
 
 /// Refuses an inverse of another model than `known`: its pressures would be right for another muscle. `path` is that of the
 /// inverse.

@@ -15,7 +15,7 @@
 //! }
 //!
 //! fn main() -> std::process::ExitCode {
-//!     pam_cli::main_with_schema::<Args>(pam_core::artifact::schemas::MODEL, run)
+//!     pam_cli::main_with_schema::<Args>(pam_artifact::schemas::MODEL, run)
 //! }
 //! ```
 //!
@@ -48,7 +48,7 @@ pub use inverse_of::ensure_inverse_of;
 pub use message::{Drawn, Format, Message, Said, Step};
 pub use output::{Output, commit_all, finish_all, pretty_json, publish, write_file};
 pub use output_error::OutputError;
-pub use pam_core::spelling::nearest;
+pub use pam_recording::spelling::nearest;
 pub use program::{main, main_with_schema};
 pub use read_args::{ReadArgs, ReadAs};
 pub use reading::{read_recording, read_recordings};

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use pam_core::artifact::{Input, InputRole};
-use pam_core::recording::{Calibration, Channels, ChannelsError, ColumnMap, Columns, FixedChannel, ReadOptions};
+use pam_artifact::{Input, InputRole};
+use pam_recording::{Calibration, Channels, ChannelsError, ColumnMap, Columns, FixedChannel, ReadOptions};
 
 const HEADING: &str = "Reading recordings";
 

@@ -13,7 +13,7 @@ use pam_cli::{Output, Verdict};
 use serde_json::json;
 
 /// Schema of the lines for machines, as published.
-const MESSAGES: &str = include_str!("../../core/schemas/pam-messages-1.json");
+const MESSAGES: &str = include_str!("../../artifact/schemas/pam-messages-1.json");
 
 /// Arguments of the child.
 #[derive(Debug, Parser)]

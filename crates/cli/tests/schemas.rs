@@ -1,17 +1,17 @@
 //! The published schemas are those of the types that are written and read; `scripts/schemas` writes them anew.
 
-use pam_cli::Message;
-use pam_core::artifact::{
+use pam_artifact::{
     AgreementArtifact, ChangeArtifact, ComparisonArtifact, DiagnosisArtifact, GroupArtifact, InverseArtifact,
     ModelArtifact, PredictionArtifact, SummaryArtifact, schemas,
 };
-use pam_core::recording::ChannelsFile;
+use pam_cli::Message;
 use pam_exo::artifact::MetricsArtifact;
 use pam_fleet_survey::plan::FleetPlan;
+use pam_recording::ChannelsFile;
 use schemars::JsonSchema;
 
 /// Where the published schemas lie.
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../core/schemas/");
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../artifact/schemas/");
 
 /// Name, text as published and text by the type.
 fn of<T: JsonSchema>(name: &'static str, published: &'static str) -> (&'static str, &'static str, String) {

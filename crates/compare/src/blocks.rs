@@ -12,7 +12,7 @@
 //! `Δ` is given an interval by the percentiles of its resamples; the p-value is two-sided, from how the resampled means of
 //! `d` lie about their own mean. Both are widened by `√(n / (n - 1))` for `n` blocks that do not overlap.
 
-use pam_core::artifact::comparison::Difference;
+use pam_artifact::comparison::Difference;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;

@@ -1,13 +1,13 @@
 //! Two models along the same recordings.
 
-use pam_core::artifact::comparison::{ComparedParameter, ComparedRecording, Comparison, Outcome};
-use pam_core::artifact::{InputRole, ModelArtifact};
-use pam_core::effects::AugmentedModel;
-use pam_core::recording::Recording;
+use pam_artifact::comparison::{ComparedParameter, ComparedRecording, Comparison, Outcome};
+use pam_artifact::{InputRole, ModelArtifact};
 use pam_identification::error::IdentifyError;
 use pam_identification::evaluate::{NoForceAt, without_force};
 use pam_identification::faults;
 use pam_identification::predict::{prepare, prepare_plausible, walk_augmented};
+use pam_muscle::effects::AugmentedModel;
+use pam_recording::Recording;
 
 use crate::blocks::{Errors, Resampling, difference};
 

@@ -4,11 +4,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::diagnosis::DiagnoseConfig;
-use pam_core::recording::{ReadOptions, read_recording};
+use pam_artifact::ModelArtifact;
+use pam_artifact::diagnosis::DiagnoseConfig;
 use pam_diagnosis::artifact::Agreement;
 use pam_diagnosis::diagnose::{MAX_EFFECTS, Request, diagnose};
+use pam_recording::{ReadOptions, read_recording};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);

@@ -1,12 +1,12 @@
 //! Diagnose recordings and print what was weighed.
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "an example")]
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::recording::{ReadOptions, read_recording};
+use pam_artifact::ModelArtifact;
 use pam_diagnosis::problem::{DiagnosisProblem, SearchOutcome};
 use pam_diagnosis::search::{Limits, chance};
 use pam_diagnosis::track::Track;
 use pam_identification::prepare::{direct, gate};
+use pam_recording::{ReadOptions, read_recording};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);

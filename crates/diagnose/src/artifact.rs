@@ -1,16 +1,16 @@
 //! A diagnosis as artifacts: what was found, and the model with it.
 
-use pam_core::artifact::diagnosis::{BeforeAfter, DiagnosisArtifact, DiagnosisFit, SCHEMA, Verdict};
-use pam_core::artifact::model::{
+use pam_artifact::diagnosis::{BeforeAfter, DiagnosisArtifact, DiagnosisFit, SCHEMA, Verdict};
+use pam_artifact::model::{
     self, CompositeEntry, Correlation, Domain, FitReport, FitStatistics, ModelArtifact, ParameterEntry,
     ParameterStatus, RecordingFit, SearchReport,
 };
-use pam_core::artifact::{Input, Tool};
-use pam_core::effects::Kind;
-use pam_core::force::Parameter;
+use pam_artifact::{Input, Tool};
 use pam_identification::evaluate::{Evaluation, evaluate, evaluate_augmented, evaluate_residuals, noise_floor_n};
 use pam_identification::prepare::Prepared;
 use pam_identification::search_space::Free;
+use pam_muscle::effects::Kind;
+use pam_muscle::force::Parameter;
 
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;

@@ -1,10 +1,10 @@
 //! The base model as a diagnosis refits it: the same parameters free as when it was identified.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::model::ParameterStatus;
-use pam_core::force::Parameter;
-use pam_core::force::columns::ForceColumns;
+use pam_artifact::ModelArtifact;
+use pam_artifact::model::ParameterStatus;
 use pam_identification::search_space::{Free, SearchSpace};
+use pam_muscle::force::Parameter;
+use pam_muscle::force::columns::ForceColumns;
 
 /// What `model` leaves free, within the ranges of an identification; everything else is held at its value.
 pub fn search_space(model: &ModelArtifact, columns: &ForceColumns) -> SearchSpace {

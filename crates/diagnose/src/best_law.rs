@@ -1,10 +1,10 @@
 //! A search under the law of friction at standstill that fits best beside what it finds.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::direction::Thresholds;
-use pam_core::effects::{AugmentedModel, Term};
+use pam_artifact::ModelArtifact;
 use pam_identification::evaluate::evaluate_augmented;
 use pam_identification::prepare::{Prepared, redirect};
+use pam_muscle::direction::Thresholds;
+use pam_muscle::effects::{AugmentedModel, Term};
 
 use crate::error::DiagnoseError;
 use crate::laws;
@@ -80,9 +80,9 @@ mod tests {
 
     use std::path::Path;
 
-    use pam_core::direction::Standstill;
-    use pam_core::recording::{Recording, Repairs, Samples};
     use pam_identification::prepare::{direct, gate};
+    use pam_muscle::direction::Standstill;
+    use pam_recording::{Recording, Repairs, Samples};
 
     /// Back and forth between 0 and 1 in `period_s`, and the way it goes.
     fn triangle(t: f64, period_s: f64) -> (f64, f64) {

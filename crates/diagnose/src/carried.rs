@@ -3,9 +3,9 @@
 //! model carries no other forms of its effects and no reversals of its recordings: fitted beside them, base and effects may leave
 //! more than fitted without.
 
-use pam_core::effects::{AugmentedModel, Kind, Term};
-use pam_core::force::ForceModel;
 use pam_identification::search_space::SearchSpace;
+use pam_muscle::effects::{AugmentedModel, Kind, Term};
+use pam_muscle::force::ForceModel;
 
 use crate::held_error::Left;
 use crate::hypothesis::CandidateEffect;

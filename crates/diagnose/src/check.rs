@@ -1,13 +1,13 @@
 //! Recordings that a diagnosis cannot use are refused before anything is fitted.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::force::ForceModel;
-use pam_core::quality::ChannelQuality;
-use pam_core::recording::Recording;
+use pam_artifact::ModelArtifact;
 use pam_identification::error::IdentifyError;
 use pam_identification::faults;
 use pam_identification::prepare::{Gated, Prepared, direct, gate};
 use pam_identification::report::out_of_range;
+use pam_muscle::force::ForceModel;
+use pam_recording::Recording;
+use pam_recording::quality::ChannelQuality;
 
 use crate::error::DiagnoseError;
 use crate::track::{FOLDS, Track};
@@ -115,7 +115,7 @@ pub(crate) fn long_enough(track: &Track, prepared: &[Prepared]) -> Result<(), Di
 mod tests {
     use super::*;
 
-    use pam_core::recording::{Repairs, Samples};
+    use pam_recording::{Repairs, Samples};
 
     /// A load that is lifted and then rests, on a load cell with steps of so many newtons.
     fn rests(step_n: f64) -> Gated {

@@ -1,7 +1,7 @@
 //! What a residual is laid out over: eight coordinates of every instant.
 
-use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::Moment;
+use pam_muscle::Coordinate;
+use pam_muscle::effects::Moment;
 
 use crate::track::Track;
 

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use pam_core::effects::{Base, Memory, Moment, Role};
-use pam_core::force::ForceModel;
-use pam_core::force::columns::{FRICTION, ForceColumns, N_COLUMNS};
+use pam_muscle::effects::{Base, Memory, Moment, Role};
+use pam_muscle::force::ForceModel;
+use pam_muscle::force::columns::{FRICTION, ForceColumns, N_COLUMNS};
 use rayon::prelude::*;
 
 use crate::hypothesis::{CandidateEffect, n_amplitudes};
 use crate::track::Track;
-use pam_core::shift::shift;
+use pam_muscle::shift::shift;
 
 /// Rows of a hypothesis.
 #[derive(Debug, Clone)]

@@ -1,15 +1,15 @@
 //! All of it in order: recordings and a model in, a diagnosis out.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::diagnosis::{
+use pam_artifact::ModelArtifact;
+use pam_artifact::diagnosis::{
     Candidate, DiagnoseConfig, Empirical, Implausible, Isolability, NamedEffect, NextExperiment, Region, Verdict,
 };
-use pam_core::artifact::model::EffectEntry;
-use pam_core::effects::{AugmentedModel, Effect, Term};
-use pam_core::force::ForceModel;
-use pam_core::recording::Recording;
+use pam_artifact::model::EffectEntry;
 use pam_identification::evaluate::{evaluate, noise_floor_n};
 use pam_identification::prepare::Prepared;
+use pam_muscle::effects::{AugmentedModel, Effect, Term};
+use pam_muscle::force::ForceModel;
+use pam_recording::Recording;
 
 use crate::best_law::Recordings;
 use crate::carried;

@@ -1,7 +1,7 @@
 //! What happened once: whether it was the force that jumped, and whether what happened in the last of the recordings goes on in those
 //! after them.
 
-use pam_core::effects::{AugmentedModel, Kind, Moment};
+use pam_muscle::effects::{AugmentedModel, Kind, Moment};
 
 use crate::design_matrix::Regressors;
 use crate::held_error::Left;

@@ -3,13 +3,12 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::{AugmentedModel, Effect, Moment, Seen, Term};
-use pam_core::force::{BaseParameters, ForceModel, Form, Parameter};
-use pam_core::motion::Instant;
-use pam_core::muscle::Muscle;
-use pam_core::shift::shifted;
 use pam_identification::search_space::{Free, LATEX_RATIO};
+use pam_muscle::effects::{AugmentedModel, Effect, Moment, Seen, Term};
+use pam_muscle::force::{BaseParameters, ForceModel, Form, Parameter};
+use pam_muscle::motion::Instant;
+use pam_muscle::shift::shifted;
+use pam_muscle::{Coordinate, Muscle};
 
 use crate::coordinates::{History, moving_limits};
 
@@ -300,8 +299,8 @@ fn chirp_cycles(instants: &[Instant]) -> [Range<usize>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pam_core::effects::CATALOGUE;
-    use pam_core::muscle::MuscleFile;
+    use pam_muscle::MuscleFile;
+    use pam_muscle::effects::CATALOGUE;
 
     #[test]
     fn the_nominal_muscle_is_that_of_the_configuration() {
@@ -338,7 +337,7 @@ mod tests {
 
     #[test]
     fn friction_that_builds_up_shows_after_a_reversal_alone() {
-        let effect = pam_core::effects::effect("presliding-hysteresis").expect("an id");
+        let effect = pam_muscle::effects::effect("presliding-hysteresis").expect("an id");
         let found = signature(effect);
         let residual_n = |at: usize| (found.with_n[at] - found.without_n[at]).abs();
         let largest = |near: bool| {

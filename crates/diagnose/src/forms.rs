@@ -4,10 +4,10 @@
 //! What that leaves must not be taken for another effect. So before anything else is named, every effect bends: its shape
 //! to either side, and its size with pressure, with contraction and with the direction of friction.
 
-use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::static_map::legendre;
-use pam_core::effects::{AugmentedModel, Base, Effect, Kind, Moment, Term};
-use pam_core::force::ForceModel;
+use pam_muscle::Coordinate;
+use pam_muscle::effects::static_map::legendre;
+use pam_muscle::effects::{AugmentedModel, Base, Effect, Kind, Moment, Term};
+use pam_muscle::force::ForceModel;
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::CandidateEffect;
@@ -180,7 +180,7 @@ fn force_n(setting: &Setting<'_>, state: &State, guesses: &[CandidateEffect]) ->
 fn partial_n(setting: &Setting<'_>, state: &State, guesses: &[CandidateEffect], first: usize, n: usize) -> Vec<f64> {
     let sheet = setting.ground().sheet(guesses, &state.model);
     let mut weights = state.fit.weights.clone();
-    let from = pam_core::force::columns::N_COLUMNS + first;
+    let from = pam_muscle::force::columns::N_COLUMNS + first;
     weights.drain(from..from + n);
     (0..setting.track.n()).map(|at| sheet.force_n(at, &weights)).collect()
 }

@@ -5,10 +5,8 @@
 //! The model misses the recordings where it leaves half as much again as the refit does; not where the effects that are found
 //! beside the parameters as given explain that.
 
-use pam_core::artifact::diagnosis::{AsGiven, Residual, Shift};
-use pam_core::artifact::model::{FitStatistics, ModelArtifact};
-use pam_core::effects::{AugmentedModel, Kind};
-use pam_core::force::{ForceModel, Parameter};
+use pam_artifact::diagnosis::{AsGiven, Residual, Shift};
+use pam_artifact::model::{FitStatistics, ModelArtifact};
 use pam_identification::condense::condense;
 use pam_identification::evaluate::{Evaluation, evaluate_augmented};
 use pam_identification::faults::reading::{self, MISSES};
@@ -17,6 +15,8 @@ use pam_identification::problem::ForceProblem;
 use pam_identification::search_space::{Free, SearchSpace};
 use pam_identification::trace::trace_augmented;
 use pam_identification::uncertainty::jackknife;
+use pam_muscle::effects::{AugmentedModel, Kind};
+use pam_muscle::force::{ForceModel, Parameter};
 use pam_optim::polish::descend;
 
 use crate::artifact::together;

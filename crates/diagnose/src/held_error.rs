@@ -1,9 +1,9 @@
 //! The error of a whole model along held-out recordings, and what it says of a term: with it and without it.
 
-use pam_core::direction::Thresholds;
-use pam_core::effects::AugmentedModel;
 use pam_identification::prepare::Prepared;
 use pam_identification::trace::trace_augmented;
+use pam_muscle::direction::Thresholds;
+use pam_muscle::effects::AugmentedModel;
 
 use crate::track::Track;
 

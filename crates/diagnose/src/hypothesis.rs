@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use pam_core::effects::{Amplitude, Base, Effect, Kind, Memory, Past, Role};
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
+use pam_muscle::effects::{Amplitude, Base, Effect, Kind, Memory, Past, Role};
 
 use crate::track::Track;
 
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
     use crate::rehearsal::tests::Given;
 
-    use pam_core::effects::effect;
+    use pam_muscle::effects::effect;
 
     fn past_of(given: &Given, id: &str) -> Past {
         past(effect(id).expect("an id"), &given.track, &given.muscle)

@@ -6,12 +6,12 @@
 //! or of the length, damping with or without pressure, a short or a long memory) counts with the form that is most like the
 //! other effect: near 1 there is a form of each that cannot be told from one of the other.
 //!
-//! Typical sizes are those of the effects' pages ([`Page::typical`](pam_core::effects::Page)).
+//! Typical sizes are those of the effects' pages ([`Page::typical`](pam_muscle::effects::Page)).
 
 use std::ops::Range;
 
-use pam_core::artifact::diagnosis::Isolability;
-use pam_core::effects::{AugmentedModel, Effect, Term};
+use pam_artifact::diagnosis::Isolability;
+use pam_muscle::effects::{AugmentedModel, Effect, Term};
 use rayon::prelude::*;
 
 use crate::design_matrix::Regressors;

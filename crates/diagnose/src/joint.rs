@@ -1,9 +1,9 @@
 //! Base and effects fitted together, within what physics allows, and judged on blocks that the fit never saw.
 
-use pam_core::force::columns::ForceColumns;
-use pam_core::force::{BaseParameters, Parameter};
 use pam_identification::problem::ForceProblem;
 use pam_identification::search_space::{Free, SearchSpace};
+use pam_muscle::force::columns::ForceColumns;
+use pam_muscle::force::{BaseParameters, Parameter};
 use pam_optim::polish::descend;
 use rayon::prelude::*;
 

@@ -4,20 +4,21 @@
 //! smooths them over or does not count them. So they are looked for in the samples as recorded, in what the model leaves
 //! there. Around each knock, the residual is cleared of a level, a slope and, until something explains that, what goes with
 //! the speed (friction, damping, delays); what remains must be one mass times the acceleration behind one mount
-//! ([`pam_core::effects::Mount`]), the same in all knocks.
+//! ([`pam_muscle::effects::Mount`]), the same in all knocks.
 
 mod line;
 
 use std::ops::Range;
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::diagnosis::{Coordinate, Region};
-use pam_core::artifact::model::ParameterEntry;
-use pam_core::direction::Thresholds;
-use pam_core::effects::{AugmentedModel, Effect, Mount, Term, effect};
+use pam_artifact::ModelArtifact;
+use pam_artifact::diagnosis::Region;
+use pam_artifact::model::ParameterEntry;
 use pam_identification::error::IdentifyError;
 use pam_identification::predict::walk_augmented;
 use pam_identification::prepare::Prepared;
+use pam_muscle::Coordinate;
+use pam_muscle::direction::Thresholds;
+use pam_muscle::effects::{AugmentedModel, Effect, Mount, Term, effect};
 use rayon::prelude::*;
 
 use crate::joint::HeldOut;
@@ -294,7 +295,7 @@ impl InertialTransient {
 mod tests {
     use std::f64::consts::TAU;
 
-    use pam_core::smoothing::acceleration_weights;
+    use pam_muscle::smoothing::acceleration_weights;
 
     use super::*;
 

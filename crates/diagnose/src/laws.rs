@@ -3,11 +3,11 @@
 //! An identification chooses the law by what eq. 11 alone leaves, and an effect that is not in the model may have taken a part
 //! in that choice. Beside the effects and the static map the choice is theirs no longer.
 
-use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
-use pam_core::effects::Role;
-use pam_core::force::Form;
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
+use pam_muscle::direction::{Direction, Driver, Standstill, Thresholds};
+use pam_muscle::effects::Role;
+use pam_muscle::force::Form;
 use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;

@@ -1,9 +1,9 @@
 //! What a diagnosis lists: effects with their evidence, as a report and as a model have them, and what became of the others.
 
-use pam_core::artifact::diagnosis::{Candidate, EmpiricalTerm, Evidence, NamedEffect};
-use pam_core::artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
-use pam_core::effects::sentence::EMPIRICAL;
-use pam_core::effects::{Sentence, Term};
+use pam_artifact::diagnosis::{Candidate, EmpiricalTerm, Evidence, NamedEffect};
+use pam_artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
+use pam_muscle::effects::sentence::EMPIRICAL;
+use pam_muscle::effects::{Sentence, Term};
 
 use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;

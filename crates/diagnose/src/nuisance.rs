@@ -15,11 +15,11 @@
 
 use std::ops::Range;
 
-use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::static_map::{self, EVEN_DEGREE, ODD_DEGREE, legendre, scaled};
-use pam_core::effects::{Moment, Term, effect};
-use pam_core::force::ForceModel;
-use pam_core::force::rubber_friction::normal_force_n;
+use pam_muscle::Coordinate;
+use pam_muscle::effects::static_map::{self, EVEN_DEGREE, ODD_DEGREE, legendre, scaled};
+use pam_muscle::effects::{Moment, Term, effect};
+use pam_muscle::force::ForceModel;
+use pam_muscle::force::rubber_friction::normal_force_n;
 
 use crate::coordinates::Coordinates;
 use crate::structure;

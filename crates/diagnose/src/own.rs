@@ -1,8 +1,8 @@
 //! Effects of a user's own, as a model carries them: the sentence with the numbers that were fitted, over the range that was seen.
 
-use pam_core::artifact::model::EffectEntry;
-use pam_core::effects::sentence::{Argument, EMPIRICAL, own};
-use pam_core::effects::{Sentence, Term};
+use pam_artifact::model::EffectEntry;
+use pam_muscle::effects::sentence::{Argument, EMPIRICAL, own};
+use pam_muscle::effects::{Sentence, Term};
 
 use crate::state::{Setting, State};
 
@@ -54,7 +54,7 @@ mod tests {
     use crate::hypothesis::{Beginning, CandidateEffect, Sign};
     use crate::rehearsal::tests::Given;
 
-    use pam_core::effects::sentence::{Curve, custom_effects};
+    use pam_muscle::effects::sentence::{Curve, custom_effects};
 
     #[test]
     fn a_model_carries_a_users_effect_with_its_fitted_numbers_where_the_recordings_went() {

@@ -1,7 +1,8 @@
 //! Where model and recordings differ, in regions over the coordinates.
 
-use pam_core::artifact::diagnosis::{Coordinate, Region};
-use pam_core::effects::Kind;
+use pam_artifact::diagnosis::Region;
+use pam_muscle::Coordinate;
+use pam_muscle::effects::Kind;
 
 use crate::regions::{Place, concentrated, from_event};
 use crate::search::{Found, chance};

@@ -1,8 +1,8 @@
 //! Base parameters that no braided muscle has, and what a name says of them.
 
-use pam_core::artifact::diagnosis::Implausible;
-use pam_core::force::Parameter;
+use pam_artifact::diagnosis::Implausible;
 use pam_identification::search_space::Free;
+use pam_muscle::force::Parameter;
 
 use crate::state::{Setting, State};
 use crate::uncertainty::Uncertainty;

@@ -1,10 +1,10 @@
 //! What a search is made with, and the search itself: on the grid, then for knocks, and then on the grid without them.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::effects::{AugmentedModel, CATALOGUE, Effect};
-use pam_core::force::columns::ForceColumns;
+use pam_artifact::ModelArtifact;
 use pam_identification::prepare::Prepared;
 use pam_identification::search_space::SearchSpace;
+use pam_muscle::effects::{AugmentedModel, CATALOGUE, Effect};
+use pam_muscle::force::columns::ForceColumns;
 
 use crate::base;
 use crate::error::DiagnoseError;

@@ -1,6 +1,7 @@
 //! Where a mismatch lies: intervals of a coordinate.
 
-use pam_core::artifact::diagnosis::{Coordinate, Region};
+use pam_artifact::diagnosis::Region;
+use pam_muscle::Coordinate;
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::CandidateEffect;

@@ -3,10 +3,10 @@
 //! Instants lie close where the path moves and far apart where it rests, so each carries the time that it stands for.
 //! Corners of the path are rounded over [`HALF_CORNER_S`] to either side, as a drive does.
 
-use pam_core::effects::Moment;
-use pam_core::force::ForceModel;
-use pam_core::motion::Instant;
-use pam_core::smoothing::HALF_WINDOW_S;
+use pam_muscle::effects::Moment;
+use pam_muscle::force::ForceModel;
+use pam_muscle::motion::Instant;
+use pam_muscle::smoothing::HALF_WINDOW_S;
 
 use crate::protocols::{Reach, Take};
 use crate::track::Track;

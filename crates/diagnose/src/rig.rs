@@ -6,13 +6,13 @@
 //! gets no name in a muscle. The augmented model has the same effects before those of the muscle,
 //! in the same order, so that both say the same.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
-use pam_core::effects::{AugmentedModel, Base, Effect, Kind, Memory, Term};
-use pam_core::force::ForceModel;
-use pam_core::shift::shifted;
+use pam_artifact::ModelArtifact;
+use pam_artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
+use pam_muscle::effects::{AugmentedModel, Base, Effect, Kind, Memory, Term};
+use pam_muscle::force::ForceModel;
+use pam_muscle::shift::shifted;
 
 use crate::forms;
 use crate::track::Track;
@@ -86,7 +86,7 @@ mod tests {
     use crate::search::{Limits, search};
     use crate::state::Setting;
 
-    use pam_core::effects::{CATALOGUE, effect};
+    use pam_muscle::effects::{CATALOGUE, effect};
 
     /// Largest difference of pressures and forces between two tracks of the same instants.
     fn apart(left: &Track, right: &Track) -> (f64, f64) {

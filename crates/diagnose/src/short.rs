@@ -6,7 +6,7 @@
 //! A memory with time constant `τ` bends away from a straight line by about `t / 8 τ` of what it does within `t`. Where every branch
 //! with any weight is so slow that the recordings together see a straight line, they tell a drift, and not what makes it.
 
-use pam_core::effects::{Kind, Term};
+use pam_muscle::effects::{Kind, Term};
 
 use crate::search::{Found, Limits, Taken, chance};
 use crate::state::Setting;
@@ -72,7 +72,7 @@ pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found, limits: &Limits, 
 mod tests {
     use super::*;
 
-    use pam_core::effects::effect;
+    use pam_muscle::effects::effect;
 
     use crate::joint::HeldOut;
 

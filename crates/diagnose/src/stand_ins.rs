@@ -1,7 +1,7 @@
 //! What was named though something without a name lies behind it: the nearest name in the catalogue, and the wrong one.
 
-use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::Kind;
+use pam_muscle::Coordinate;
+use pam_muscle::effects::Kind;
 
 use crate::hypothesis::CandidateEffect;
 use crate::search::{Found, Judged, Limits, judged};

@@ -1,10 +1,10 @@
 //! A hypothesis fitted to the track.
 
-use pam_core::effects::{Effect, Memory, Role, Term};
-use pam_core::force::ForceModel;
-use pam_core::force::columns::ForceColumns;
-use pam_core::muscle::Muscle;
 use pam_identification::search_space::SearchSpace;
+use pam_muscle::Muscle;
+use pam_muscle::effects::{Effect, Memory, Role, Term};
+use pam_muscle::force::ForceModel;
+use pam_muscle::force::columns::ForceColumns;
 
 use crate::design_matrix::{DesignMatrix, Regressors};
 use crate::hypothesis::{CandidateEffect, ranges};

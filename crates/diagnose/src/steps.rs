@@ -1,6 +1,6 @@
 //! Instants at which the residual of a recording may have jumped.
 
-use pam_core::motion::Instant;
+use pam_muscle::motion::Instant;
 
 use crate::state::{Setting, State};
 

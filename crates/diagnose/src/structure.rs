@@ -8,9 +8,9 @@
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
-use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::force::columns::N_COLUMNS;
 use pam_identification::problem::ForceProblem;
+use pam_muscle::Coordinate;
+use pam_muscle::force::columns::N_COLUMNS;
 use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use nalgebra::DMatrix;
-use pam_core::force::columns::N_COLUMNS;
 use pam_identification::problem::ForceProblem;
+use pam_muscle::force::columns::N_COLUMNS;
 
 use crate::design_matrix::DesignMatrix;
 use crate::state::{Setting, State};

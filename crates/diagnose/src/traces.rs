@@ -1,11 +1,11 @@
 //! Recordings along a diagnosis: what was measured, what base and augmented model say, and the coordinates that a residual
 //! is laid out over.
 
-use pam_core::effects::{AugmentedModel, Moment};
-use pam_core::motion::Instant;
 use pam_identification::error::IdentifyError;
 use pam_identification::predict::walk_augmented;
 use pam_identification::prepare::Prepared;
+use pam_muscle::effects::{AugmentedModel, Moment};
+use pam_muscle::motion::Instant;
 use rayon::prelude::*;
 
 use crate::coordinates::{History, moving_limits};

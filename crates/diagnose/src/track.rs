@@ -5,13 +5,13 @@
 
 use std::ops::Range;
 
-use pam_core::direction::{Direction, Thresholds};
-use pam_core::effects::{AugmentedModel, Moment};
-use pam_core::force::ForceModel;
-use pam_core::motion::{Channels, Instant, walk};
-use pam_core::shift::shifted;
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
+use pam_muscle::direction::{Direction, Thresholds};
+use pam_muscle::effects::{AugmentedModel, Moment};
+use pam_muscle::force::ForceModel;
+use pam_muscle::motion::{Channels, Instant, walk};
+use pam_muscle::shift::shifted;
 use rayon::prelude::*;
 
 use crate::knocks::InertialTransient;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pam_core::effects::{Effect, Kind, Seen, Shape, effect};
+use pam_muscle::effects::{Effect, Kind, Seen, Shape, effect};
 use rayon::prelude::*;
 
 use crate::events;

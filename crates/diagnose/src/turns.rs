@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use pam_core::force::ForceModel;
+use pam_muscle::force::ForceModel;
 
 use crate::coordinates::Coordinates;
 use crate::nuisance::Nuisance;

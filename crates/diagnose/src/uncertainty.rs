@@ -1,9 +1,9 @@
 //! How well the parameters of a hypothesis are known.
 
 use nalgebra::DMatrix;
-use pam_core::artifact::model::{ParameterEntry, ParameterStatus};
-use pam_core::effects::Kind;
+use pam_artifact::model::{ParameterEntry, ParameterStatus};
 use pam_identification::search_space::SearchSpace;
+use pam_muscle::effects::Kind;
 
 use crate::joint::JointFit;
 use crate::state::{Setting, State};

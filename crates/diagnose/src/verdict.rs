@@ -1,6 +1,6 @@
 //! What is to be believed of a search.
 
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::diagnosis::Verdict;
 
 use crate::knocks::InertialTransient;
 use crate::search::{Found, Limits, Taken};

@@ -6,8 +6,8 @@
 //! than half of its size or more than twice, and surely so, was another one: where that had the strongest evidence, the
 //! next best is looked for.
 
-use pam_core::effects::{AugmentedModel, Effect, Kind};
-use pam_core::force::ForceModel;
+use pam_muscle::effects::{AugmentedModel, Effect, Kind};
+use pam_muscle::force::ForceModel;
 
 use crate::coordinates::Coordinates;
 use crate::error::DiagnoseError;

@@ -1,7 +1,7 @@
 //! What a diagnosis is worth at the full rate of the recordings: the verdict in words and numbers, and what held-out recordings say of
 //! it.
 
-use pam_core::artifact::diagnosis::{EmpiricalGain, Verdict};
+use pam_artifact::diagnosis::{EmpiricalGain, Verdict};
 
 use crate::artifact::{Agreement, together};
 use crate::diagnose::Diagnosis;

@@ -1,7 +1,8 @@
 //! The diagnosis in words.
 
-use pam_core::artifact::diagnosis::{Coordinate, NamedEffect, Region, Verdict};
-use pam_core::effects::effect;
+use pam_artifact::diagnosis::{NamedEffect, Region, Verdict};
+use pam_muscle::Coordinate;
+use pam_muscle::effects::effect;
 
 use crate::artifact::together;
 use crate::given::Given;

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use pam_core::effects::AugmentedModel;
-use pam_core::force::{BaseParameters, ForceModel, Form};
-use pam_core::muscle::MuscleFile;
 use pam_exo::config::{LiftConfig, LiftPlan};
 use pam_exo::inverse::ExactInverse;
 use pam_exo::simulation::Simulation;
+use pam_muscle::MuscleFile;
+use pam_muscle::effects::AugmentedModel;
+use pam_muscle::force::{BaseParameters, ForceModel, Form};
 
 fn main() {
     divan::main();

@@ -1,6 +1,6 @@
 //! `exo-metrics/1`: how well a lift followed its reference.
 
-use pam_core::artifact::{Input, Tool};
+use pam_artifact::{Input, Tool};
 #[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use pam_core::spelling::unreadable;
+use pam_recording::spelling::unreadable;
 
 /// Why a configuration is refused.
 #[derive(Debug, thiserror::Error)]

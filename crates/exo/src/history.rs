@@ -3,7 +3,7 @@
 //! Plant and controller use it alike, the one with what is, the other with what it has measured. The direction is the
 //! state of the friction, -1 to 1, which spares effects with a direction the chatter of a sign at standstill.
 
-use pam_core::effects::{AugmentedMemory, AugmentedModel, Moment};
+use pam_muscle::effects::{AugmentedMemory, AugmentedModel, Moment};
 
 /// Force of an augmented model along a motion.
 #[derive(Debug)]

@@ -4,7 +4,7 @@
 //! The direction is a number between -1 and 1, because friction that has not broken away yet is somewhere
 //! between the branches of contraction and extension.
 
-use pam_core::effects::AugmentedModel;
+use pam_muscle::effects::AugmentedModel;
 
 /// An answer of an inverse.
 #[derive(Debug, Clone, Copy, PartialEq)]

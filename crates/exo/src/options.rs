@@ -1,7 +1,7 @@
 //! What each option of the controller is worth: the lift with all of them, without each, and with none.
 
-use pam_core::effects::AugmentedModel;
-use pam_core::force::{BaseParameters, ForceModel, Parameter};
+use pam_muscle::effects::AugmentedModel;
+use pam_muscle::force::{BaseParameters, ForceModel, Parameter};
 
 use crate::config::LiftPlan;
 use crate::control::{ControlSettings, LengthSource};

@@ -4,7 +4,7 @@
 //! highest pressure, for the arm as the controller is told and as it is. Where it does not, a mounted length is looked for
 //! with which it does, or else a load, or else a smaller rise; each is only proposed after a lift with it went well.
 
-use pam_core::artifact::model::Domain;
+use pam_artifact::model::Domain;
 
 use crate::arm::Elbow;
 use crate::config::LiftPlan;

@@ -1,6 +1,6 @@
 //! A configuration and a muscle together: lifts that can be run.
 
-use pam_core::effects::AugmentedModel;
+use pam_muscle::effects::AugmentedModel;
 use rand_pcg::Pcg64;
 
 use crate::arm::{Elbow, Lever, Load};

@@ -5,7 +5,7 @@
 //! on the number of threads nor on the number of trials. Of a trial five numbers are kept; errors over time go
 //! into histograms of counts, which add up to the same in any order.
 
-use pam_core::effects::AugmentedModel;
+use pam_muscle::effects::AugmentedModel;
 use rand::RngExt as _;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;

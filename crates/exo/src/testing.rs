@@ -1,8 +1,8 @@
 //! Starting points of several tests.
 
-use pam_core::effects::{AugmentedModel, Term, effect};
-use pam_core::force::{BaseParameters, ForceModel, Form};
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
+use pam_muscle::effects::{AugmentedModel, Term, effect};
+use pam_muscle::force::{BaseParameters, ForceModel, Form};
 
 /// The nominal self-made McKibben muscle of 267 mm.
 pub(crate) fn nominal_muscle() -> Muscle {

@@ -8,9 +8,9 @@
 //! at its bound, has no distribution to draw from and is held at its value.
 
 use nalgebra::{DMatrix, DVector};
-use pam_core::artifact::estimates::EstimatesError;
-use pam_core::artifact::{Estimates, ModelArtifact};
-use pam_core::force::ForceModel;
+use pam_artifact::estimates::EstimatesError;
+use pam_artifact::{Estimates, ModelArtifact};
+use pam_muscle::force::ForceModel;
 use rand::RngExt as _;
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
@@ -67,7 +67,7 @@ impl Uncertainty {
 mod tests {
     use std::path::Path;
 
-    use pam_core::force::Parameter;
+    use pam_muscle::force::Parameter;
     use rand_pcg::Pcg64;
 
     use super::*;

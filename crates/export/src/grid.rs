@@ -1,7 +1,7 @@
 //! Settled force on a grid over the operating range, fine enough for linear interpolation.
 
-use pam_core::artifact::model::Domain;
-use pam_core::effects::AugmentedModel;
+use pam_artifact::model::Domain;
+use pam_muscle::effects::AugmentedModel;
 
 use crate::ExportError;
 

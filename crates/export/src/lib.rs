@@ -11,7 +11,7 @@
 //! What a program on a microcontroller can know ends at the present instant, while `pam-predict` knows the whole recording: it
 //! centers its windows, dates a turn back to where the length turned and looks ahead whether the length will stand still. The
 //! model proper (eq. 11, effects, memories) is causal. So an export is parted there: the step function takes a
-//! [`Moment`](pam_core::effects::Moment), which `pam-predict` and a causal observer compute each in their own way, and agrees
+//! [`Moment`](pam_muscle::effects::Moment), which `pam-predict` and a causal observer compute each in their own way, and agrees
 //! with `pam-predict` to rounding on equal moments. What causality costs is a figure of its own.
 
 pub mod c;

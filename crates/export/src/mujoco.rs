@@ -15,8 +15,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use nalgebra::{DMatrix, DVector};
-use pam_core::artifact::model::Domain;
-use pam_core::effects::{AugmentedModel, Term};
+use pam_artifact::model::Domain;
+use pam_muscle::effects::{AugmentedModel, Term};
 
 use crate::ExportError;
 use crate::grid::{DIRECTIONS, Grid};

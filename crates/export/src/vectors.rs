@@ -6,13 +6,13 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use pam_core::artifact::model::Domain;
-use pam_core::direction::Thresholds;
-use pam_core::effects::{AugmentedModel, Moment};
-use pam_core::muscle::Muscle;
+use pam_artifact::model::Domain;
 use pam_identification::error::IdentifyError;
 use pam_identification::predict::walk_moments;
 use pam_identification::prepare::Prepared;
+use pam_muscle::Muscle;
+use pam_muscle::direction::Thresholds;
+use pam_muscle::effects::{AugmentedModel, Moment};
 
 use crate::ExportError;
 

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use pam_core::artifact::diagnosis::Verdict;
-use pam_core::artifact::model::{FitStatistics, ModelArtifact, ParameterStatus};
-use pam_core::artifact::{ArtifactError, DiagnosisArtifact};
+use pam_artifact::diagnosis::Verdict;
+use pam_artifact::model::{FitStatistics, ModelArtifact, ParameterStatus};
+use pam_artifact::{ArtifactError, DiagnosisArtifact};
 
 use crate::plan::Campaign;
 use crate::step::{Outcome, Step};

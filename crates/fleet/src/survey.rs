@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::diagnosis::Verdict;
 use rayon::prelude::*;
 
 use crate::change::{Change, changes};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use pam_core::spelling::{nearest, unreadable};
+use pam_recording::spelling::{nearest, unreadable};
 
 use crate::error::{TableError, TableErrorKind};
 

@@ -3,16 +3,16 @@
 use std::ops::ControlFlow;
 
 use divan::{Bencher, black_box};
-use pam_core::force::columns::ForceColumns;
-use pam_core::force::{BaseParameters, Form, Parameter};
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::{Recording, Repairs, Samples};
 use pam_identification::condense::condense;
 use pam_identification::fit::{FitOptions, search};
 use pam_identification::prepare::{Prepared, direct, gate, thresholds};
 use pam_identification::problem::ForceProblem;
 use pam_identification::search_space::{Free, LATEX_RATIO, SearchSpace};
+use pam_muscle::MuscleFile;
+use pam_muscle::force::columns::ForceColumns;
+use pam_muscle::force::{BaseParameters, Form, Parameter};
 use pam_optim::swarm::{SwarmOptions, minimize};
+use pam_recording::{Recording, Repairs, Samples};
 use pam_virtual_bench::{Bench, Options, TrueMuscle, command};
 
 fn main() {

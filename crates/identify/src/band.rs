@@ -13,9 +13,9 @@
 //! parameters. It is what the recordings of the fit tell: outside their operating range the force may be anywhere. The
 //! gradient is a central difference over a standard error to either side, so that it sees the curvature that matters.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::estimates::{Estimates, EstimatesError};
-use pam_core::force::ForceModel;
+use pam_artifact::ModelArtifact;
+use pam_artifact::estimates::{Estimates, EstimatesError};
+use pam_muscle::force::ForceModel;
 
 /// Share of samples that the interval is meant to hold.
 pub const LEVEL: f64 = 0.95;

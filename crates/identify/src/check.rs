@@ -1,7 +1,7 @@
 //! What is refused before anything is fitted.
 
-use pam_core::force::Parameter;
-use pam_core::force::columns::N_COLUMNS;
+use pam_muscle::force::Parameter;
+use pam_muscle::force::columns::N_COLUMNS;
 
 use crate::error::IdentifyError;
 use crate::faults;

@@ -7,10 +7,10 @@
 
 use std::ops::Range;
 
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
-use pam_core::recording::CHUNK_ROWS;
+use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
 use pam_optim::gathered::Gathered;
 use pam_optim::summary::Summary;
+use pam_recording::CHUNK_ROWS;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;

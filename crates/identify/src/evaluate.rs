@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use pam_core::artifact::model::FitStatistics;
-use pam_core::direction::Thresholds;
-use pam_core::effects::AugmentedModel;
-use pam_core::force::ForceModel;
-use pam_core::motion::Instant;
-use pam_core::quality::channel::whole_noise_std;
-use pam_core::recording::CHUNK_ROWS;
+use pam_artifact::model::FitStatistics;
+use pam_muscle::direction::Thresholds;
+use pam_muscle::effects::AugmentedModel;
+use pam_muscle::force::ForceModel;
+use pam_muscle::motion::Instant;
+use pam_recording::CHUNK_ROWS;
+use pam_recording::quality::channel::whole_noise_std;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;
@@ -262,8 +262,8 @@ const FLOOR_SAMPLES: usize = 1000;
 mod tests {
     use super::*;
 
-    use pam_core::force::Form;
-    use pam_core::recording::Samples;
+    use pam_muscle::force::Form;
+    use pam_recording::Samples;
 
     use crate::prepare::{direct, gate};
     use crate::testing::{THRESHOLDS, model, recording};

@@ -8,10 +8,10 @@
 
 use std::ops::ControlFlow;
 
-use pam_core::force::ForceModel;
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
-use pam_core::force::{BaseParameters, Form};
-use pam_core::muscle::{Dimension, Muscle};
+use pam_muscle::force::ForceModel;
+use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
+use pam_muscle::force::{BaseParameters, Form};
+use pam_muscle::{Dimension, Muscle};
 use pam_optim::polish::descend;
 use pam_optim::swarm::{SwarmOptions, minimize};
 

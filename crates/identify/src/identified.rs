@@ -1,13 +1,13 @@
 //! What was found, and its artifact.
 
-use pam_core::artifact::model::{
+use pam_artifact::model::{
     Correlation, Domain, FitReport, IdentifyConfig, ModelArtifact, RecordingFit, SCHEMA, SearchReport, StandstillFit,
     StartReport, UnboundedFit,
 };
-use pam_core::artifact::{Input, Tool};
-use pam_core::direction::Thresholds;
-use pam_core::force::ForceModel;
-use pam_core::muscle::{Dimension, Muscle};
+use pam_artifact::{Input, Tool};
+use pam_muscle::direction::Thresholds;
+use pam_muscle::force::ForceModel;
+use pam_muscle::{Dimension, Muscle};
 
 use crate::error::IdentifyError;
 use crate::evaluate::Evaluation;

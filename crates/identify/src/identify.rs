@@ -1,10 +1,10 @@
 //! All of it in order: from recordings to an artifact.
 
-use pam_core::artifact::model::{Assumed, BladderLaw, FrictionLaw, IdentifyConfig, Loss, StandstillFit};
-use pam_core::direction::Thresholds;
-use pam_core::force::columns::ForceColumns;
-use pam_core::force::{BaseParameters, ForceModel, Form, Parameter};
-use pam_core::muscle::{Dimension, Muscle, MuscleFile};
+use pam_artifact::model::{Assumed, BladderLaw, FrictionLaw, IdentifyConfig, Loss, StandstillFit};
+use pam_muscle::direction::Thresholds;
+use pam_muscle::force::columns::ForceColumns;
+use pam_muscle::force::{BaseParameters, ForceModel, Form, Parameter};
+use pam_muscle::{Dimension, Muscle, MuscleFile};
 
 use crate::check::enough;
 use crate::condense::{Condensed, condense};
@@ -354,7 +354,7 @@ impl Checked {
             fixed: self
                 .fix
                 .iter()
-                .map(|&(parameter, value)| pam_core::artifact::model::FixedParameter {
+                .map(|&(parameter, value)| pam_artifact::model::FixedParameter {
                     name: parameter.artifact_name().to_owned(),
                     value: parameter.from_artifact(value),
                 })

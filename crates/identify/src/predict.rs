@@ -2,14 +2,14 @@
 
 use std::io;
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::model::Domain;
-use pam_core::direction::Thresholds;
-use pam_core::effects::{AugmentedModel, Moment};
-use pam_core::force::ForceModel;
-use pam_core::motion::{Channels, Instant, walk};
-use pam_core::recording::{Chunk, Recording};
-use pam_core::shift::shifted;
+use pam_artifact::ModelArtifact;
+use pam_artifact::model::Domain;
+use pam_muscle::direction::Thresholds;
+use pam_muscle::effects::{AugmentedModel, Moment};
+use pam_muscle::force::ForceModel;
+use pam_muscle::motion::{Channels, Instant, walk};
+use pam_muscle::shift::shifted;
+use pam_recording::{Chunk, Recording};
 
 use crate::error::IdentifyError;
 use crate::faults;

@@ -1,9 +1,9 @@
 //! A model along a recording, judged: errors over counted and over all samples, the interval around the prediction, and
 //! where the model extrapolates.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::prediction::{Band, Extrapolation, PredictionErrors};
-use pam_core::effects::AugmentedModel;
+use pam_artifact::ModelArtifact;
+use pam_artifact::prediction::{Band, Extrapolation, PredictionErrors};
+use pam_muscle::effects::AugmentedModel;
 
 use crate::band::{LEVEL, PredictiveBand};
 use crate::error::IdentifyError;

@@ -1,11 +1,11 @@
 //! Recordings made ready for a fit: quality gate and direction of motion beside each.
 
-use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
-use pam_core::force::{ForceModel, Form};
-use pam_core::muscle::Muscle;
-use pam_core::quality::channel::PLAY;
-use pam_core::quality::{RecordingQuality, SensorEnds};
-use pam_core::recording::Recording;
+use pam_muscle::Muscle;
+use pam_muscle::direction::{Direction, Driver, Standstill, Thresholds};
+use pam_muscle::force::{ForceModel, Form};
+use pam_recording::Recording;
+use pam_recording::quality::channel::PLAY;
+use pam_recording::quality::{RecordingQuality, SensorEnds};
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;

@@ -1,7 +1,7 @@
 //! The cost of a point of the search space, from a summary alone.
 
 use nalgebra::{DMatrix, DVector};
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
+use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
 use pam_optim::polish::Residuals;
 use pam_optim::summary::{SquareSum, Summary};
 use pam_optim::swarm::Axes;

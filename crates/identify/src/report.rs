@@ -1,11 +1,11 @@
 //! What was found, in the words and numbers of an artifact.
 
-use pam_core::artifact::model::{CompositeEntry, ParameterEntry, ParameterStatus};
-use pam_core::force::Parameter;
-use pam_core::force::columns::{BLADDER, FRICTION};
-use pam_core::muscle::{Dimension, MuscleFile};
-use pam_core::quality::ChannelQuality;
+use pam_artifact::model::{CompositeEntry, ParameterEntry, ParameterStatus};
+use pam_muscle::force::Parameter;
+use pam_muscle::force::columns::{BLADDER, FRICTION};
+use pam_muscle::{Dimension, MuscleFile};
 use pam_optim::summary::Summary;
+use pam_recording::quality::ChannelQuality;
 
 use crate::faults::lag::Lag;
 use crate::identify::Identified;

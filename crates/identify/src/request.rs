@@ -1,9 +1,9 @@
 //! What is asked of an identification.
 
-use pam_core::artifact::model::{Assumed, Loss};
-use pam_core::force::{Form, Parameter};
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::Recording;
+use pam_artifact::model::{Assumed, Loss};
+use pam_muscle::MuscleFile;
+use pam_muscle::force::{Form, Parameter};
+use pam_recording::Recording;
 
 use crate::fit::FitOptions;
 

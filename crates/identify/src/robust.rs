@@ -7,8 +7,8 @@
 //! Source: Huber (1964), "Robust estimation of a location parameter"; `c` keeps 95 % of the efficiency on
 //! normal errors.
 
-use pam_core::force::ForceModel;
-use pam_core::force::columns::ForceColumns;
+use pam_muscle::force::ForceModel;
+use pam_muscle::force::columns::ForceColumns;
 use pam_optim::polish::descend;
 
 use crate::condense::{Condensed, condense};

@@ -6,7 +6,7 @@
 //! warns, with the cause that is likely then: tare, gain and datum errors are absorbed by the parameters and
 //! show nowhere else.
 
-use pam_core::force::{BaseParameters, Parameter};
+use pam_muscle::force::{BaseParameters, Parameter};
 
 /// `C₀₁ / C₁₀` of latex, 105.7 / 118.4 (Klute and Hannaford, 2000): how the sum is shared unless told
 /// otherwise.

@@ -8,13 +8,13 @@ use std::cell::OnceCell;
 use std::io;
 use std::ops::Range;
 
-use pam_core::artifact::model::StandstillFit;
-use pam_core::direction::{Direction, Driver, Standstill, Thresholds};
-use pam_core::force::Form;
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
-use pam_core::recording::CHUNK_ROWS;
+use pam_artifact::model::StandstillFit;
+use pam_muscle::direction::{Direction, Driver, Standstill, Thresholds};
+use pam_muscle::force::Form;
+use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
 use pam_optim::gathered::Gathered;
 use pam_optim::summary::Summary;
+use pam_recording::CHUNK_ROWS;
 use rayon::prelude::*;
 
 use crate::error::IdentifyError;
@@ -337,7 +337,7 @@ pub(crate) fn condensed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pam_core::recording::Samples;
+    use pam_recording::Samples;
 
     use crate::prepare::{direct, gate};
     use crate::testing::{THRESHOLDS, model, recording};
@@ -373,7 +373,7 @@ mod tests {
 
     #[test]
     fn a_tremor_of_the_muscle_asks_for_a_finer_play_and_that_of_a_sensor_does_not() {
-        let muscle = pam_core::muscle::Muscle::nominal();
+        let muscle = pam_muscle::Muscle::nominal();
         let columns = ForceColumns::new(&muscle, 3e9, Form::Corrected, 3e5 * 0.25);
         let play_m = |shakes_the_muscle: bool| {
             turning(&[&shaking(shakes_the_muscle)], &columns, COARSE, 2e-5).expect("travels").length_m

@@ -1,8 +1,8 @@
 //! Sums over samples beside a model, which merge.
 
-use pam_core::artifact::model::FitStatistics;
-use pam_core::artifact::summary::TallySums;
-use pam_core::force::ForceModel;
+use pam_artifact::model::FitStatistics;
+use pam_artifact::summary::TallySums;
+use pam_muscle::force::ForceModel;
 
 use crate::error::IdentifyError;
 use crate::evaluate::without_force;

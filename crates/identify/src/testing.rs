@@ -1,9 +1,9 @@
 //! A muscle, thresholds and recordings that the tests share.
 
-use pam_core::direction::{Standstill, Thresholds};
-use pam_core::force::{BaseParameters, ForceModel, Form};
-use pam_core::muscle::Muscle;
-use pam_core::recording::{Recording, Repairs, Samples};
+use pam_muscle::Muscle;
+use pam_muscle::direction::{Standstill, Thresholds};
+use pam_muscle::force::{BaseParameters, ForceModel, Form};
+use pam_recording::{Recording, Repairs, Samples};
 
 /// Thresholds of a clean recording.
 pub(crate) const THRESHOLDS: Thresholds =

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use pam_core::direction::Thresholds;
-use pam_core::effects::AugmentedModel;
-use pam_core::force::ForceModel;
-use pam_core::recording::CHUNK_ROWS;
+use pam_muscle::direction::Thresholds;
+use pam_muscle::effects::AugmentedModel;
+use pam_muscle::force::ForceModel;
+use pam_recording::CHUNK_ROWS;
 
 use crate::error::IdentifyError;
 use crate::predict::walk_augmented;

@@ -1,8 +1,8 @@
 //! The same columns with weights free of any sign or range: what eq. 11 could reach if physics did not bind it.
 
 use nalgebra::{DMatrix, DVector};
-use pam_core::artifact::model::{ImpliedParameter, UnboundedFit};
-use pam_core::force::columns::{BLADDER, BRAID, FRICTION, ForceColumns, N_COLUMNS};
+use pam_artifact::model::{ImpliedParameter, UnboundedFit};
+use pam_muscle::force::columns::{BLADDER, BRAID, FRICTION, ForceColumns, N_COLUMNS};
 use pam_optim::summary::Summary;
 
 use crate::condense::{Condensed, condense};

@@ -5,16 +5,16 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use pam_core::force::columns::ForceColumns;
-use pam_core::force::{BaseParameters, Form, Parameter};
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::{ReadOptions, read_recording};
 use pam_identification::condense::{Condensed, condense};
 use pam_identification::fit::{FitOptions, search};
 use pam_identification::prepare::{direct, gate, thresholds};
 use pam_identification::problem::ForceProblem;
 use pam_identification::search_space::{Free, LATEX_RATIO, SearchSpace};
+use pam_muscle::MuscleFile;
+use pam_muscle::force::columns::ForceColumns;
+use pam_muscle::force::{BaseParameters, Form, Parameter};
 use pam_optim::polish::descend;
+use pam_recording::{ReadOptions, read_recording};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 

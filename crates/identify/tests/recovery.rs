@@ -5,14 +5,14 @@
 
 #![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
 
-use pam_core::artifact::Tool;
-use pam_core::artifact::model::{Assumed, BladderLaw, FrictionLaw, Loss, ModelArtifact};
-use pam_core::force::Form;
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::{Recording, Repairs, Samples};
+use pam_artifact::Tool;
+use pam_artifact::model::{Assumed, BladderLaw, FrictionLaw, Loss, ModelArtifact};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
 use pam_identification::search_space::LATEX_RATIO;
+use pam_muscle::MuscleFile;
+use pam_muscle::force::Form;
+use pam_recording::{Recording, Repairs, Samples};
 use pam_virtual_bench::{Bench, Options, Parameters, TrueMuscle, command};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;

@@ -5,16 +5,16 @@
 
 #![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
 
-use pam_core::artifact::agreement::AgreementArtifact;
-use pam_core::artifact::model::{Assumed, Loss, ModelArtifact};
-use pam_core::artifact::summary::{Shard, SummaryArtifact};
-use pam_core::artifact::{Tool, sha256_hex};
-use pam_core::force::Form;
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::{CHUNK_ROWS, Recording, Repairs, Samples};
+use pam_artifact::Tool;
+use pam_artifact::agreement::AgreementArtifact;
+use pam_artifact::model::{Assumed, Loss, ModelArtifact};
+use pam_artifact::summary::{Shard, SummaryArtifact};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
 use pam_identification::shards::{Head, ShardError, Step, advance, summarize};
+use pam_muscle::MuscleFile;
+use pam_muscle::force::Form;
+use pam_recording::{CHUNK_ROWS, Recording, Repairs, Samples, sha256_hex};
 use pam_virtual_bench::{Bench, Concealed, Options, TrueMuscle, command};
 use rand::{RngExt, SeedableRng};
 

@@ -1,15 +1,15 @@
 //! One evaluation of a network, and of the exact inverse, over points that change every time.
 
 use divan::{Bencher, black_box};
-use pam_core::artifact::inverse::Activation;
-use pam_core::force::{BaseParameters, ForceModel, Form};
-use pam_core::muscle::Muscle;
+use pam_artifact::inverse::Activation;
 use pam_inverse_model::design::{Draw, points};
 use pam_inverse_model::domain::InverseBox;
 use pam_inverse_model::network::Network;
 use pam_inverse_model::samples::Scaling;
 use pam_inverse_model::stream::Stream;
 use pam_inverse_model::{ExactInverse, InverseNetwork};
+use pam_muscle::Muscle;
+use pam_muscle::force::{BaseParameters, ForceModel, Form};
 
 fn main() {
     divan::main();

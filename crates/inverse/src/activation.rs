@@ -3,7 +3,7 @@
 //! The slopes are written in terms of the answer, as eqs 17 and 19 do for the sigmoid: `y (1 - y)`. For the
 //! hyperbolic tangent it is `1 - y²`, for a linear output 1.
 
-use pam_core::artifact::inverse::Activation;
+use pam_artifact::inverse::Activation;
 
 /// `tanh`, from one exponential: as fast as it gets, and exact to the last bits of 1, which is what a sum of
 /// such terms needs.

@@ -8,7 +8,7 @@
 //!
 //! Biases move like weights from an input of 1; the paper leaves them as drawn.
 
-use pam_core::artifact::inverse::Update;
+use pam_artifact::inverse::Update;
 use rand::seq::SliceRandom as _;
 use rand_pcg::Pcg64Dxsm;
 
@@ -77,7 +77,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::normal_equations::cost;
     use crate::stream::Stream;
-    use pam_core::artifact::inverse::Activation;
+    use pam_artifact::inverse::Activation;
 
     /// Samples of a saddle, inside what every activation can reach.
     pub(crate) fn saddle(n: usize) -> Samples {

@@ -5,7 +5,7 @@
 //! friction can hold it flat at low pressure; what rises in one piece is a *branch*. Where there are several,
 //! the longest is the one that is inverted, and the lower of two equal ones.
 
-use pam_core::effects::AugmentedModel;
+use pam_muscle::effects::AugmentedModel;
 
 /// Steps that the range of pressure is searched with; a branch shorter than one may be missed.
 const STEPS: usize = 64;

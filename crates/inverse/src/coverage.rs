@@ -1,6 +1,6 @@
 //! The operating range of pressures and lengths: where the inverse exists, and why not elsewhere.
 
-use pam_core::artifact::inverse::Coverage;
+use pam_artifact::inverse::Coverage;
 
 use crate::ExactInverse;
 

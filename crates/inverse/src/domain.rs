@@ -1,6 +1,6 @@
 //! Where a model may be inverted: the box that its recordings cover.
 
-use pam_core::artifact::model::Domain;
+use pam_artifact::model::Domain;
 
 use crate::InverseError;
 

@@ -12,8 +12,8 @@
 //! cells; then a query costs a handful of evaluations of the model. Otherwise every query searches its branch,
 //! which costs about 150.
 
-use pam_core::artifact::inverse::{InverseDomain, Reach};
-use pam_core::effects::AugmentedModel;
+use pam_artifact::inverse::{InverseDomain, Reach};
+use pam_muscle::effects::AugmentedModel;
 
 use crate::branch::{longest, rising, slope_n_per_pa};
 use crate::domain::InverseBox;

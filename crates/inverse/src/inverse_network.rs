@@ -4,8 +4,8 @@
 //! A control loop asks thousands of times, so an evaluation allocates nothing: the answers of two neighboring
 //! layers live on the stack, which is why layers have a largest width.
 
-use pam_core::artifact::InverseArtifact;
-use pam_core::artifact::inverse::{InverseDomain, MAX_WIDTH};
+use pam_artifact::InverseArtifact;
+use pam_artifact::inverse::{InverseDomain, MAX_WIDTH};
 
 use crate::activation::value;
 use crate::network::Network;
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
     use crate::exact::tests::{BOX, nominal_inverse};
     use crate::stream::Stream;
-    use pam_core::artifact::inverse::Activation;
+    use pam_artifact::inverse::Activation;
 
     fn untrained() -> InverseNetwork {
         let activations = [Activation::Tanh, Activation::Linear];

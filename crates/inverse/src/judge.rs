@@ -1,6 +1,6 @@
 //! What a network is worth: errors on points that the training never saw, where the inverse exists.
 
-use pam_core::artifact::inverse::{ErrorReport, ErrorStatistics, RegionErrors};
+use pam_artifact::inverse::{ErrorReport, ErrorStatistics, RegionErrors};
 
 use rayon::prelude::*;
 

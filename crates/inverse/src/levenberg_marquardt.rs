@@ -102,7 +102,7 @@ impl LevenbergMarquardt {
 mod tests {
     use super::*;
     use crate::backpropagation::tests::{network, saddle};
-    use pam_core::artifact::inverse::Activation;
+    use pam_artifact::inverse::Activation;
 
     #[test]
     fn the_cost_falls_at_every_step() {

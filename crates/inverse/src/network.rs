@@ -17,7 +17,7 @@
 
 use std::ops::Range;
 
-use pam_core::artifact::inverse::Activation;
+use pam_artifact::inverse::Activation;
 use rand::RngExt as _;
 use rand_pcg::Pcg64Dxsm;
 

@@ -203,7 +203,7 @@ pub(crate) fn cost(network: &Network, samples: &Samples) -> f64 {
 mod tests {
     use super::*;
     use crate::stream::Stream;
-    use pam_core::artifact::inverse::Activation;
+    use pam_artifact::inverse::Activation;
 
     #[test]
     fn sums_agree_with_rows_one_by_one() {

@@ -1,9 +1,9 @@
 //! Points along recordings: pressures, lengths and directions as they happened, forces as the model says.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::direction::{Direction, Driver};
-use pam_core::force::Form;
-use pam_core::recording::Recording;
+use pam_artifact::ModelArtifact;
+use pam_muscle::direction::{Direction, Driver};
+use pam_muscle::force::Form;
+use pam_recording::Recording;
 
 use crate::design::Point;
 use crate::{ExactInverse, InverseError};

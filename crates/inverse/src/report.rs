@@ -1,8 +1,8 @@
 //! From a model to an artifact: points, training, judgement, in one go.
 
-use pam_core::artifact::inverse::{InverseArtifact, SCHEMA, TrainConfig, TrainingReport};
-use pam_core::artifact::{Input, ModelArtifact, Tool};
-use pam_core::recording::Recording;
+use pam_artifact::inverse::{InverseArtifact, SCHEMA, TrainConfig, TrainingReport};
+use pam_artifact::{Input, ModelArtifact, Tool};
+use pam_recording::Recording;
 
 use crate::coverage::coverage;
 use crate::design::{self, Draw, Point};

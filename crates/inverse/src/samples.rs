@@ -1,6 +1,6 @@
 //! Points as a network sees them: scaled, and parted into those that train and those that decide when to stop.
 
-use pam_core::artifact::inverse::{Activation, ChannelScaling};
+use pam_artifact::inverse::{Activation, ChannelScaling};
 use rand::seq::SliceRandom as _;
 
 use crate::design::Point;

@@ -1,6 +1,6 @@
 //! Weights from points: several starts, each stopped early, the best on the validation points wins.
 
-use pam_core::artifact::inverse::{Activation, Ended, MAX_WIDTH, Method, StartReport, TrainConfig, Update};
+use pam_artifact::inverse::{Activation, Ended, MAX_WIDTH, Method, StartReport, TrainConfig, Update};
 use rayon::prelude::*;
 
 use crate::InverseError;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pam_core::artifact::InverseArtifact;
+use pam_artifact::InverseArtifact;
 use pam_inverse_model::InverseNetwork;
 use serde_json::{Value, json};
 
@@ -54,7 +54,7 @@ fn read(text: &str) -> Result<InverseArtifact, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("inverse.json");
     std::fs::write(&path, text).expect("a file");
-    let message = |error: pam_core::artifact::ArtifactError| {
+    let message = |error: pam_artifact::ArtifactError| {
         error.to_string().replace(&*folder.path().join(Path::new("")).to_string_lossy(), "")
     };
     InverseArtifact::read(&path).map(|(artifact, _)| artifact).map_err(message)

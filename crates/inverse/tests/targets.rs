@@ -1,8 +1,6 @@
 //! The accuracy that is promised, over many seeds, for the nominal muscle.
 
-use pam_core::artifact::inverse::{Method, TrainConfig};
-use pam_core::force::{BaseParameters, ForceModel, Form};
-use pam_core::muscle::Muscle;
+use pam_artifact::inverse::{Method, TrainConfig};
 use pam_inverse_model::ExactInverse;
 use pam_inverse_model::InverseNetwork;
 use pam_inverse_model::design::{Draw, points};
@@ -10,6 +8,8 @@ use pam_inverse_model::domain::InverseBox;
 use pam_inverse_model::judge::{judge, report};
 use pam_inverse_model::samples::{Samples, Scaling, part};
 use pam_inverse_model::train::{Trained, defaults, train};
+use pam_muscle::Muscle;
+use pam_muscle::force::{BaseParameters, ForceModel, Form};
 
 fn nominal() -> ExactInverse {
     let muscle = Muscle::nominal();

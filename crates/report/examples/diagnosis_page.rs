@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 use std::io::Write as _;
 
-use pam_core::artifact::diagnosis::Coordinate;
+use pam_muscle::Coordinate;
 use pam_report::{
     ConfusionFigure, DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageEffect, PageEvidence,
     PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording, PageRegion,

@@ -6,7 +6,7 @@
     reason = "a test that fails may panic, and one that skips says so"
 )]
 
-use pam_core::artifact::diagnosis::Coordinate;
+use pam_muscle::Coordinate;
 use pam_report::{
     ConfusionFigure, DiagnosisPage, FigureError, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate,
     PageEffect, PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput,

@@ -6,13 +6,13 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::model::Loss;
-use pam_core::force::Form;
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::{ReadOptions, Recording, read_recording};
+use pam_artifact::ModelArtifact;
+use pam_artifact::model::Loss;
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
+use pam_muscle::MuscleFile;
+use pam_muscle::force::Form;
+use pam_recording::{ReadOptions, Recording, read_recording};
 
 /// Gives `bytes` to `take` as a file, as every reader wants one. The file is the same one each time.
 pub fn with_file<T>(bytes: &[u8], take: impl FnOnce(&Path) -> T) -> T {
@@ -75,7 +75,7 @@ pub fn fit_shortly(muscle: MuscleFile, recording: Recording, accept_implausible:
         bladder_ratio: 0.89,
         length_play_m: None,
         pressure_play_pa: None,
-        assumed: pam_core::artifact::model::Assumed::default(),
+        assumed: pam_artifact::model::Assumed::default(),
         accept_implausible,
         unbounded: true,
     };

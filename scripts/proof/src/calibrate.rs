@@ -1,11 +1,11 @@
 //! How strong a concealed effect is: by what refitting eq. 11 leaves of the noise-free force.
 
 use anyhow::{Context as _, Result};
-use pam_core::artifact::model::Loss;
-use pam_core::force::{ForceModel, Form};
-use pam_core::muscle::MuscleFile;
+use pam_artifact::model::Loss;
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
+use pam_muscle::MuscleFile;
+use pam_muscle::force::{ForceModel, Form};
 
 use crate::case::{Log, Noise};
 use crate::rig::{Hidden, Rig, recording, sensor_noise};
@@ -55,7 +55,7 @@ impl Calibration<'_> {
             // Those that a recording with noise has.
             length_play_m: Some(5.0 * self.white_factor * length_m),
             pressure_play_pa: Some(5.0 * self.white_factor * pressure_pa),
-            assumed: pam_core::artifact::model::Assumed::default(),
+            assumed: pam_artifact::model::Assumed::default(),
             accept_implausible: true,
             unbounded: false,
         };

@@ -1,6 +1,6 @@
 //! What a case is: everything that is needed to record it again, and what was concealed in it.
 
-use pam_core::effects::effect;
+use pam_muscle::effects::effect;
 use pam_virtual_bench::catalogue::EFFECTS;
 use serde::{Deserialize, Serialize};
 

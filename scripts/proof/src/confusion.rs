@@ -1,6 +1,6 @@
 //! What was concealed against what was named first.
 
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::diagnosis::Verdict;
 use pam_report::FigureError;
 use pam_report::plot::{self, Bins, Canvas, ColorBar, Map, Rect};
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! All cases together: what had to be reached, and what was.
 
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::diagnosis::Verdict;
 use serde::Serialize;
 
 use crate::case::Kind;

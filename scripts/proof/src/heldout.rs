@@ -7,11 +7,11 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
-use pam_core::artifact::ModelArtifact;
-use pam_core::quality::SensorEnds;
-use pam_core::recording::{ReadOptions, Recording, read_recording};
+use pam_artifact::ModelArtifact;
 use pam_identification::predict::prepare;
 use pam_identification::prepare::gate;
+use pam_recording::quality::SensorEnds;
+use pam_recording::{ReadOptions, Recording, read_recording};
 use serde::{Deserialize, Serialize};
 
 use crate::folder::{AUGMENTED, MODEL, Recordings};

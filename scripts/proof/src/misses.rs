@@ -1,6 +1,6 @@
 //! Cases that missed, one line each: the truth, and what was said of it.
 
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::diagnosis::Verdict;
 
 use crate::case::Kind;
 use crate::score::{Outcome, Score, Spot};

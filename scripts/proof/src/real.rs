@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context as _, Result, bail, ensure};
-use pam_core::artifact::{DiagnosisArtifact, ModelArtifact};
+use pam_artifact::{DiagnosisArtifact, ModelArtifact};
 use pam_report::Table;
 
 use crate::worlds::ceiling::{Beside, trees_n};

@@ -1,7 +1,7 @@
 //! The bench, as the proof uses it: a random muscle, logs with what is concealed, with noise and without.
 
 use anyhow::Result;
-use pam_core::recording::{Recording, Samples};
+use pam_recording::{Recording, Samples};
 use pam_virtual_bench::{Bench, BenchRecording, Concealed, Options, Protocol, Sensors, TrueMuscle};
 
 use crate::case::{Case, EVENT, Log, Noise, Place};

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result};
+use pam_artifact::DiagnosisArtifact;
 use pam_cli::{Console, Progress};
-use pam_core::artifact::DiagnosisArtifact;
 use rayon::prelude::*;
 
 use crate::case::Case;

@@ -1,7 +1,8 @@
 //! One case: the diagnosis against the truth.
 
-use pam_core::artifact::diagnosis::{Coordinate, DiagnosisArtifact, Region, Verdict};
-use pam_core::effects::effect;
+use pam_artifact::diagnosis::{DiagnosisArtifact, Region, Verdict};
+use pam_muscle::Coordinate;
+use pam_muscle::effects::effect;
 use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, Kind, NAMELESS, Place};

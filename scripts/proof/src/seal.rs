@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context as _, Result, ensure};
-use pam_core::artifact::sha256_hex;
+use pam_recording::sha256_hex;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;

@@ -4,8 +4,8 @@
 
 use std::path::Path;
 
-use pam_core::artifact::DiagnosisArtifact;
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::DiagnosisArtifact;
+use pam_artifact::diagnosis::Verdict;
 use pam_proof::case::Kind;
 use pam_proof::draw::{self, Plan};
 use pam_proof::folder::{self, DIAGNOSIS, Recordings};

@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 pub(crate) const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/model.json");
 
 /// The published schema.
-pub(crate) const SCHEMA: &str = include_str!("../../../../crates/core/schemas/exo-metrics-1.json");
+pub(crate) const SCHEMA: &str = include_str!("../../../../crates/artifact/schemas/exo-metrics-1.json");
 
 pub(crate) const CONFIG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../configs/lift.toml");
 

@@ -211,7 +211,7 @@ fn an_inverse_of_another_model_is_refused_with_the_remedy() {
     insta::assert_snapshot!(say(), @"error: inverse.json: it is the inverse of another model (trained.json, SHA-256 01234567…) than --model model.json (d980eaf2…); train it anew with pam-train-inverse --model model.json --out inverse.json, or name the model that it belongs to");
     inverse_of(folder.path(), None);
     insta::assert_snapshot!(say(), @"error: inverse.json: it does not say which model it is the inverse of; train it anew with pam-train-inverse --model model.json --out inverse.json");
-    let own = pam_core::artifact::sha256_hex(&std::fs::read(MODEL).unwrap());
+    let own = pam_recording::sha256_hex(&std::fs::read(MODEL).unwrap());
     inverse_of(folder.path(), Some(&own));
     let output = run(folder.path(), &["--inverse", "inverse.json", "--check"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -1,13 +1,13 @@
 //! A folder with recordings of the nominal muscle and the model that a fit finds, and the program in it.
 
-use pam_core::artifact::diagnosis::Verdict;
-use pam_core::artifact::model::Loss;
-use pam_core::artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
-use pam_core::force::Form;
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::{ReadOptions, Recording, read_recording};
+use pam_artifact::diagnosis::Verdict;
+use pam_artifact::model::Loss;
+use pam_artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
+use pam_muscle::MuscleFile;
+use pam_muscle::force::Form;
+use pam_recording::{ReadOptions, Recording, read_recording};
 
 use pam_virtual_bench::{Bench, Concealed, Options, Parameters, TrueMuscle, command};
 use std::path::{Path, PathBuf};
@@ -21,9 +21,9 @@ pub(crate) const LOGS: &str = "minor-loops.csv isobaric-triangles.csv isometric-
 pub(crate) const HELD: &str = "--holdout multisine.csv";
 
 /// The published schemas of what the program writes.
-pub(crate) const SCHEMA: &str = include_str!("../../../../crates/core/schemas/pam-diagnosis-1.json");
+pub(crate) const SCHEMA: &str = include_str!("../../../../crates/artifact/schemas/pam-diagnosis-1.json");
 
-pub(crate) const MODEL_SCHEMA: &str = include_str!("../../../../crates/core/schemas/pam-model-1.json");
+pub(crate) const MODEL_SCHEMA: &str = include_str!("../../../../crates/artifact/schemas/pam-model-1.json");
 
 pub(crate) fn muscle_file() -> MuscleFile {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -109,7 +109,7 @@ impl Desk {
             fix: Vec::new(),
             length_play_m: None,
             pressure_play_pa: None,
-            assumed: pam_core::artifact::model::Assumed::default(),
+            assumed: pam_artifact::model::Assumed::default(),
             accept_implausible: true,
             unbounded: false,
         };

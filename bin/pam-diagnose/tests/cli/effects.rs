@@ -1,7 +1,7 @@
 //! Effects that are concealed, and what is said of them.
 
-use pam_core::artifact::diagnosis::Verdict;
-use pam_core::artifact::{DiagnosisArtifact, ModelArtifact};
+use pam_artifact::diagnosis::Verdict;
+use pam_artifact::{DiagnosisArtifact, ModelArtifact};
 use pam_virtual_bench::Concealed;
 use std::fmt::Write as _;
 

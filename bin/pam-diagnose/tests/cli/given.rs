@@ -1,7 +1,7 @@
 //! The model as it was given, against the recordings.
 
-use pam_core::artifact::DiagnosisArtifact;
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::DiagnosisArtifact;
+use pam_artifact::diagnosis::Verdict;
 use pam_virtual_bench::Concealed;
 
 use crate::desk::{Desk, FITTED, HELD, LOGS, reworked};

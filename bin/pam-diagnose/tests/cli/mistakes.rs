@@ -1,6 +1,6 @@
 //! Faults and mistakes: one line with place and remedy.
 
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::diagnosis::Verdict;
 
 use crate::desk::{Desk, LOGS, reworked};
 

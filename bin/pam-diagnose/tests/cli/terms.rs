@@ -1,7 +1,7 @@
 //! Effects of a user's own, empirical terms, and what is explained.
 
-use pam_core::artifact::DiagnosisArtifact;
-use pam_core::artifact::diagnosis::Verdict;
+use pam_artifact::DiagnosisArtifact;
+use pam_artifact::diagnosis::Verdict;
 use pam_report::number::significant;
 
 use crate::desk::{Desk, HELD, LOGS};
@@ -87,7 +87,7 @@ fn every_effect_is_explained_and_drawn() {
     let desk = Desk::plain();
     let list = String::from_utf8(desk.run("--explain all").stdout).unwrap();
     let ids: Vec<&str> = list.lines().skip(2).filter_map(|line| line.split_whitespace().next()).collect();
-    assert_eq!(ids.len(), pam_core::effects::CATALOGUE.len());
+    assert_eq!(ids.len(), pam_muscle::effects::CATALOGUE.len());
     for id in ids {
         let output = desk.run(&format!("--explain {id} --figure {id}.svg --quiet"));
         assert_eq!(output.status.code(), Some(0), "{id}");

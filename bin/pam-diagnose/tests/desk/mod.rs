@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use pam_core::artifact::model::{Assumed, Loss};
-use pam_core::artifact::{Input, InputRole, Tool};
-use pam_core::force::Form;
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::{ReadOptions, read_recording};
+use pam_artifact::model::{Assumed, Loss};
+use pam_artifact::{Input, InputRole, Tool};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
+use pam_muscle::MuscleFile;
+use pam_muscle::force::Form;
+use pam_recording::{ReadOptions, read_recording};
 
 use pam_virtual_bench::{Bench, Concealed, Options, Parameters, TrueMuscle, command};
 

@@ -3,9 +3,9 @@
 use std::process::{Command, Output};
 
 use crate::desk::{Desk, cases, column, effects, has_c, model, python, touching_guard};
-use pam_core::artifact::{InverseArtifact, ModelArtifact};
-use pam_core::effects::Effect;
+use pam_artifact::{InverseArtifact, ModelArtifact};
 use pam_inverse_model::InverseNetwork;
+use pam_muscle::effects::Effect;
 
 /// Largest error of a translation, in N.
 const TOLERANCE_N: f64 = 1e-9;
@@ -133,8 +133,8 @@ fn vectors_are_what_pam_predict_says() {
     desk.exported("multisine.csv --model model.json --vectors vectors.csv --quiet");
     let vectors = column(&desk.read("vectors.csv"), "force_model_n");
     let (artifact, _) = ModelArtifact::read(&desk.path().join("model.json")).unwrap();
-    let options = pam_core::recording::ReadOptions::default();
-    let recording = pam_core::recording::read_recording(&desk.path().join("multisine.csv"), &options).unwrap();
+    let options = pam_recording::ReadOptions::default();
+    let recording = pam_recording::read_recording(&desk.path().join("multisine.csv"), &options).unwrap();
     let mut prepared = pam_identification::predict::prepare_plausible(recording, &artifact).unwrap();
     let model = artifact.augmented_model();
     prepared.begin(model.base(), artifact.direction.standstill).unwrap();

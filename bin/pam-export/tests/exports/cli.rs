@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use crate::desk::{Desk, effects, model, python};
-use pam_core::artifact::ModelArtifact;
+use pam_artifact::ModelArtifact;
 
 /// The one error of a refused run, which leaves no file of those named `out`.
 fn refusal(desk: &Desk, arguments: &str) -> String {

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use pam_core::effects::sentence::{Curve, Driver, Recall, Scale, Sentence, custom_effects, own};
-use pam_core::effects::{CATALOGUE, Effect, NAMELESS};
+use pam_muscle::effects::sentence::{Curve, Driver, Recall, Scale, Sentence, custom_effects, own};
+use pam_muscle::effects::{CATALOGUE, Effect, NAMELESS};
 
 /// A model whose every value is known.
 const MODEL: &str = include_str!("../../../pam-predict/tests/data/model.json");

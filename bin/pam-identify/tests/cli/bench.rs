@@ -72,4 +72,4 @@ pub(crate) fn reworked(change: impl Fn(usize, [f64; 4]) -> [f64; 4]) -> String {
 pub(crate) const TAIL: &str = "--muscle m.toml --out model.json";
 
 /// The published schema.
-pub(crate) const SCHEMA: &str = include_str!("../../../../crates/core/schemas/pam-model-1.json");
+pub(crate) const SCHEMA: &str = include_str!("../../../../crates/artifact/schemas/pam-model-1.json");

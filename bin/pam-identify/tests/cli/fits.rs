@@ -17,7 +17,7 @@ fn a_fit_above_the_limit_is_rejected_but_written() {
 fn the_pure_swarm_says_that_it_was_not_polished() {
     let bench = Bench::new();
     assert_eq!(bench.run(&format!("good.csv {TAIL} --no-polish")).status.code(), Some(0));
-    let (artifact, _) = pam_core::artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
+    let (artifact, _) = pam_artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
     assert!(!artifact.config.polish && !artifact.search.converged);
     assert!(artifact.search.starts.iter().all(|start| start.polished_rmse_n.is_none()));
 }
@@ -29,7 +29,7 @@ fn outliers_move_the_robust_fit_less() {
     bench.file("loose.csv", reworked(|index, [t, p, l, f]| [t, p, l, if index % 50 == 0 { f + 200.0 } else { f }]));
     let k3_n = |arguments: &str| {
         assert_eq!(bench.run(&format!("{arguments} {TAIL} --quiet")).status.code(), Some(0));
-        let (artifact, _) = pam_core::artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
+        let (artifact, _) = pam_artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
         artifact.parameters.iter().find(|entry| entry.name == "k3").unwrap().value
     };
     let (clean, square, huber) = (k3_n("good.csv"), k3_n("loose.csv"), k3_n("loose.csv --loss huber"));
@@ -54,7 +54,7 @@ fn a_freed_braid_angle_comes_back() {
          model.json --quiet",
     );
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    let (artifact, _) = pam_core::artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
+    let (artifact, _) = pam_artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
     let angle = artifact.parameters.iter().find(|entry| entry.name == "braid_angle").unwrap();
     let error_rad = (angle.value - 25.0_f64.to_radians()).abs();
     assert!(error_rad < 4.0 * angle.stderr.unwrap(), "{} ± {:?}", angle.value.to_degrees(), angle.stderr);
@@ -92,7 +92,7 @@ fn a_muscle_file_from_a_pipe_is_read_once_and_hashed_as_it_was_parsed() {
     writer.join().unwrap();
     let model: serde_json::Value =
         serde_json::from_slice(&std::fs::read(bench.folder.path().join("model.json")).unwrap()).unwrap();
-    assert_eq!(model["inputs"][0]["sha256"], pam_core::artifact::sha256_hex(&text).as_str());
+    assert_eq!(model["inputs"][0]["sha256"], pam_recording::sha256_hex(&text).as_str());
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn a_dead_weight_gives_a_model_that_can_be_read() {
     bench.file("weight.csv", format!("time_s,pressure_kPa,length_mm\n{rows}"));
     let output = bench.run(&format!("weight.csv --fixed force_N=100 --accept-implausible {TAIL}"));
     assert!(matches!(output.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&output.stderr));
-    let (model, _) = pam_core::artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
+    let (model, _) = pam_artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
     assert_eq!(model.fit.estimation.r2, 0.0);
 }
 

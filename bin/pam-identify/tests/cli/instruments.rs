@@ -31,7 +31,7 @@ fn a_spike_is_located_and_does_not_count_and_one_beyond_everything_is_refused() 
     let rmse = |log: &str| {
         let output = bench.run(&format!("{log} {TAIL}"));
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-        let (model, _) = pam_core::artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
+        let (model, _) = pam_artifact::ModelArtifact::read(&bench.folder.path().join("model.json")).unwrap();
         (model.fit.estimation, model.warnings)
     };
     let (clean, _) = rmse("good.csv");

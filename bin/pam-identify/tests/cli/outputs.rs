@@ -84,7 +84,7 @@ fn a_matlab_file_gives_the_model_that_its_columns_give() {
     assert_eq!(bench.run(&format!("good.mat {arguments} --out mat.json")).status.code(), Some(0));
     bench.file("named.csv", shipped("isobaric-triangles.csv").replacen("pressure_kPa", "p_meas", 1));
     assert_eq!(bench.run(&format!("named.csv {arguments} --out csv.json")).status.code(), Some(0));
-    let model = |name: &str| pam_core::artifact::ModelArtifact::read(&bench.folder.path().join(name)).unwrap().0;
+    let model = |name: &str| pam_artifact::ModelArtifact::read(&bench.folder.path().join(name)).unwrap().0;
     assert_eq!(model("mat.json").parameters, model("csv.json").parameters);
     let said = bench.refusal("good.mat --muscle m.toml --out model.json");
     assert!(said.starts_with("error: good.mat: no column gives pressure"), "{said}");

@@ -1,11 +1,11 @@
 //! Recordings in several files: the model of all, and what does not go together.
 
-use pam_core::artifact::ModelArtifact;
+use pam_artifact::ModelArtifact;
 
 use crate::bench::{Bench, TAIL, shipped};
 
-const SUMMARY: &str = include_str!("../../../../crates/core/schemas/pam-summary-1.json");
-const AGREEMENT: &str = include_str!("../../../../crates/core/schemas/pam-agreement-1.json");
+const SUMMARY: &str = include_str!("../../../../crates/artifact/schemas/pam-summary-1.json");
+const AGREEMENT: &str = include_str!("../../../../crates/artifact/schemas/pam-agreement-1.json");
 
 /// The good recording in three files, and another one.
 fn cut() -> Bench {

@@ -1,8 +1,8 @@
 //! Whether a term bends an effect that was named: it lives where that effect lives, so that it says how the effect's form differs
 //! from the published one rather than what else is there.
 
-use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::sentence::{Recall, Sentence};
+use pam_muscle::Coordinate;
+use pam_muscle::effects::sentence::{Recall, Sentence};
 
 use crate::hypothesis::CandidateEffect;
 
@@ -27,8 +27,8 @@ fn lives_in(sentence: &Sentence) -> Coordinate {
 
 #[cfg(test)]
 mod tests {
-    use pam_core::effects::effect;
-    use pam_core::effects::sentence::{Curve, Driver, Scale};
+    use pam_muscle::effects::effect;
+    use pam_muscle::effects::sentence::{Curve, Driver, Scale};
 
     use super::*;
     use crate::hypothesis::Beginning;

@@ -1,8 +1,8 @@
 //! The curve of a term as a figure shows it, with the band that leaving out stretches of recording gives.
 
-use pam_core::artifact::diagnosis::EmpiricalCurve;
-use pam_core::effects::Sentence;
-use pam_core::effects::sentence::Argument;
+use pam_artifact::diagnosis::EmpiricalCurve;
+use pam_muscle::effects::Sentence;
+use pam_muscle::effects::sentence::Argument;
 
 use crate::state::{Setting, State};
 

@@ -1,8 +1,8 @@
 //! The search for terms: one after the other, as long as each gains where it was not fitted.
 
-use pam_core::artifact::diagnosis::Verdict;
-use pam_core::effects::{AugmentedModel, Sentence, Term};
-use pam_core::force::ForceModel;
+use pam_artifact::diagnosis::Verdict;
+use pam_muscle::effects::{AugmentedModel, Sentence, Term};
+use pam_muscle::force::ForceModel;
 
 use super::bends::{PREFERRED, bends};
 use super::field::Field;
@@ -289,7 +289,7 @@ impl Discovery {
 
 #[cfg(test)]
 mod tests {
-    use pam_core::effects::sentence::{Driver, Recall, Scale};
+    use pam_muscle::effects::sentence::{Driver, Recall, Scale};
 
     use super::*;
     use crate::rehearsal::tests::Given;

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
-use pam_core::effects::sentence::{Argument, Curve, Scale, Sentence};
+use pam_muscle::effects::sentence::{Argument, Curve, Scale, Sentence};
 
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};

@@ -5,8 +5,8 @@
 
 use std::ops::Range;
 
-use pam_core::effects::sentence::{Argument, own};
-use pam_core::effects::{Sentence, Term};
+use pam_muscle::effects::sentence::{Argument, own};
+use pam_muscle::effects::{Sentence, Term};
 
 use crate::joint::JointFit;
 use crate::nuisance::{Group, Nuisance};
@@ -67,7 +67,7 @@ pub(super) fn amplitudes(nuisance: &Nuisance, fit: &JointFit) -> Vec<Vec<f64>> {
 pub(super) fn terms(sentences: &[Sentence], nuisance: &Nuisance, state: &State) -> Vec<Term> {
     let term = |(sentence, amplitudes): (&Sentence, Vec<f64>)| {
         let effect = own(sentence).ok()?;
-        let within = |(value, amplitude): (f64, &pam_core::effects::Amplitude)| {
+        let within = |(value, amplitude): (f64, &pam_muscle::effects::Amplitude)| {
             value.clamp(amplitude.range.0, amplitude.range.1)
         };
         let amplitudes = amplitudes.into_iter().zip(effect.amplitudes()).map(within).collect();

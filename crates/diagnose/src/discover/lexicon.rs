@@ -1,7 +1,7 @@
 //! The words that sentences are made of here: drivers, and memories with numbers that suit the recordings.
 
-use pam_core::effects::Moment;
-use pam_core::effects::sentence::{Driver, Recall};
+use pam_muscle::effects::Moment;
+use pam_muscle::effects::sentence::{Driver, Recall};
 
 use crate::coordinates::moving_limits;
 use crate::state::{Setting, State};

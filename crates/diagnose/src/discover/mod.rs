@@ -1,6 +1,6 @@
 //! A mismatch without a name gets an equation.
 //!
-//! Where something is left that no effect of the catalogue explains, the [sentence](pam_core::effects::sentence) of the grammar
+//! Where something is left that no effect of the catalogue explains, the [sentence](pam_muscle::effects::sentence) of the grammar
 //! that foretells held-out blocks best, for its degrees of freedom, is fitted jointly with the base and what was named. It is
 //! written only where held-out recordings, or where there are none the blocks, are foretold better with it: at the rate of the
 //! recordings, as programs will evaluate it, by more than the standard error of the gain, and better than by the model as given.

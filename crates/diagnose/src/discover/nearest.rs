@@ -1,6 +1,6 @@
 //! Effects of the catalogue that come nearest to a term, and what speaks against each.
 
-use pam_core::artifact::diagnosis::NearestEffect;
+use pam_artifact::diagnosis::NearestEffect;
 
 use crate::joint::HeldOut;
 use crate::search::Found;

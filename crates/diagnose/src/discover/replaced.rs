@@ -1,8 +1,8 @@
 //! Names that terms take the place of. What a term swallows of a name, as both are fitted together, the term says better: the name was
 //! the nearest one in the catalogue, unless recordings that nothing was fitted to show it.
 
-use pam_core::artifact::diagnosis::Verdict;
-use pam_core::effects::{AugmentedModel, Kind, Term};
+use pam_artifact::diagnosis::Verdict;
+use pam_muscle::effects::{AugmentedModel, Kind, Term};
 
 use super::discovery::{Discovery, HeldAgainst, discover};
 use crate::explain::rms;

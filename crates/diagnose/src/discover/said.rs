@@ -1,8 +1,8 @@
 //! A term in words.
 
-use pam_core::artifact::diagnosis::EmpiricalCurve;
-use pam_core::effects::Sentence;
-use pam_core::effects::sentence::{Curve, Driver, Recall, Scale};
+use pam_artifact::diagnosis::EmpiricalCurve;
+use pam_muscle::effects::Sentence;
+use pam_muscle::effects::sentence::{Curve, Driver, Recall, Scale};
 
 /// Share of the height of a curve above which it acts.
 const ACTS: f64 = 0.2;

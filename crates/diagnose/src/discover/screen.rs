@@ -1,7 +1,7 @@
 //! Which sentence foretells what was left out best: every word with a spline of few knots first, then the best with other curves
 //! and better numbers.
 
-use pam_core::effects::sentence::{Curve, Scale, Sentence};
+use pam_muscle::effects::sentence::{Curve, Scale, Sentence};
 use rayon::prelude::*;
 
 use super::field::{Field, Products};

@@ -2,7 +2,7 @@
 
 use super::field::{Field, Products};
 use super::screen::Said;
-use pam_core::effects::Sentence;
+use pam_muscle::effects::Sentence;
 use rayon::prelude::*;
 
 /// Draws of blocks.

@@ -1,8 +1,8 @@
 //! What a diagnosis writes of the terms that were discovered.
 
-use pam_core::artifact::diagnosis::{Empirical, EmpiricalGain, EmpiricalTerm, Stability, StabilityRival};
-use pam_core::artifact::model::ParameterEntry;
-use pam_core::effects::Term;
+use pam_artifact::diagnosis::{Empirical, EmpiricalGain, EmpiricalTerm, Stability, StabilityRival};
+use pam_artifact::model::ParameterEntry;
+use pam_muscle::effects::Term;
 
 use super::discovery::{Discovery, LOOKS};
 use super::screen::Said;

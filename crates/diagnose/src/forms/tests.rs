@@ -1,6 +1,6 @@
 use super::*;
 
-use pam_core::effects::effect;
+use pam_muscle::effects::effect;
 
 use crate::rehearsal::tests::Given;
 

@@ -1,8 +1,8 @@
 use super::*;
 
-use pam_core::artifact::diagnosis::DiagnoseConfig;
-use pam_core::recording::{Recording, Repairs, Samples};
+use pam_artifact::diagnosis::DiagnoseConfig;
 use pam_identification::prepare::{direct, gate};
+use pam_recording::{Recording, Repairs, Samples};
 
 use crate::diagnose::{Diagnosis, Request, diagnose};
 use crate::search::Limits;
@@ -201,9 +201,9 @@ fn effects_that_explain_what_the_parameters_as_given_miss_take_it_back() {
     let mut strokes = recorded("strokes.csv", STROKES, &model, 1.0);
     let ramps = recorded("ramps.csv", RAMPS, &model, 1.0);
     // The same parameters, recorded by a rig whose gauge lags by 0.4 s: nothing that eq. 11 has follows that.
-    let lag = pam_core::effects::effect("pressure-lag").expect("an id");
+    let lag = pam_muscle::effects::effect("pressure-lag").expect("an id");
     let lagging =
-        AugmentedModel::new(model.force_model(), vec![pam_core::effects::Term::new(lag, vec![0.4, 0.0], vec![])]);
+        AugmentedModel::new(model.force_model(), vec![pam_muscle::effects::Term::new(lag, vec![0.4, 0.0], vec![])]);
     let estimation = {
         let as_modelled = |prepared: &Prepared| {
             let trace = trace_augmented(prepared, &lagging, model.direction, 0).expect("a trace");

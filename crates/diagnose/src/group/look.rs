@@ -1,7 +1,7 @@
 //! A look at what the rig may do, in all muscles together.
 
-use pam_core::artifact::group::{RigCandidate, Says};
-use pam_core::effects::{Effect, Term};
+use pam_artifact::group::{RigCandidate, Says};
+use pam_muscle::effects::{Effect, Term};
 
 use super::member::{Estimate, Fitted, Member, Worth};
 use super::shared::{OnGrid, Shared, best, is_apart, on_grid, own_value, polished, pooled, spread};

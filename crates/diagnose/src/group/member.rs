@@ -4,7 +4,7 @@
 //! effect of the rig is weighed beside every explanation that the muscle has without it: none, what its own diagnosis named, and
 //! the best of the effects of a muscle, named or not. What the rig's effect gains is counted from the best of these.
 
-use pam_core::effects::{Kind, Seen, Term};
+use pam_muscle::effects::{Kind, Seen, Term};
 
 use crate::coordinates::Coordinates;
 use crate::diagnose::Diagnosis;
@@ -122,7 +122,7 @@ impl<'a> Member<'a> {
         let setting = question.setting(&track, &nuisance);
         let base = again(&setting, &base)?;
         let mut sets = vec![own(diagnosis)];
-        let of_a_muscle = |effect: &dyn pam_core::effects::Effect| {
+        let of_a_muscle = |effect: &dyn pam_muscle::effects::Effect| {
             effect.kind() == Kind::Muscle
                 && !is_of_the_rig(effect)
                 && !question.limits.excluded.iter().any(|id| id == effect.page().id)

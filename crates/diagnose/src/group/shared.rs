@@ -1,6 +1,6 @@
 //! The value of an effect of the rig that all muscles share: where their evidence together is largest.
 
-use pam_core::effects::{Effect, Seen, Shape};
+use pam_muscle::effects::{Effect, Seen, Shape};
 use rayon::prelude::*;
 
 use super::member::{Estimate, Member, Worth};

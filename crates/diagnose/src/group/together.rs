@@ -1,7 +1,7 @@
 //! All of it in order: muscles in, what their rig does and what is left for each of them out.
 
-use pam_core::artifact::group::RigCandidate;
-use pam_core::effects::{CATALOGUE, Effect, Term};
+use pam_artifact::group::RigCandidate;
+use pam_muscle::effects::{CATALOGUE, Effect, Term};
 
 use super::look::{TELLS, Taken, look, taken};
 use super::member::Member;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use pam_core::artifact::group::{GroupMuscle, RigEffect, Says};
+use pam_artifact::group::{GroupMuscle, RigEffect, Says};
 
 use super::together::Group;
 
@@ -97,7 +97,7 @@ pub(super) fn warnings(rig: &[RigEffect], muscles: &[GroupMuscle]) -> Vec<String
 
 /// Names that every muscle has of its own and that are confused with `effect` of the rig: each may be a part of it.
 fn confused_in_all(effect: &RigEffect, muscles: &[GroupMuscle]) -> Vec<String> {
-    let Some(of_the_rig) = pam_core::effects::effect(&effect.id) else { return Vec::new() };
+    let Some(of_the_rig) = pam_muscle::effects::effect(&effect.id) else { return Vec::new() };
     let is_everywhere = |id: &str| muscles.iter().all(|muscle| muscle.effects.iter().any(|own| own.id == id));
     let confused = of_the_rig.page().confused_with.iter().filter(|confusion| is_everywhere(confusion.id));
     let said = confused.map(|confusion| {

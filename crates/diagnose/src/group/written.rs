@@ -1,10 +1,8 @@
 //! A group as an artifact has it.
 
-use pam_core::artifact::diagnosis::{DiagnoseConfig, Verdict};
-use pam_core::artifact::group::{
-    GroupArtifact, GroupMuscle, GroupResidual, HeldOutShare, InMuscle, RigEffect, SCHEMA, Says,
-};
-use pam_core::artifact::model::ParameterEntry;
+use pam_artifact::diagnosis::{DiagnoseConfig, Verdict};
+use pam_artifact::group::{GroupArtifact, GroupMuscle, GroupResidual, HeldOutShare, InMuscle, RigEffect, SCHEMA, Says};
+use pam_artifact::model::ParameterEntry;
 
 use pam_identification::evaluate::Evaluation;
 

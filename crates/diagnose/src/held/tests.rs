@@ -1,6 +1,6 @@
 use super::*;
 
-use pam_core::artifact::ModelArtifact;
+use pam_artifact::ModelArtifact;
 use pam_identification::prepare::Prepared;
 
 use crate::given::tests::{STROKES, artifact, diagnosed, recorded};

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use pam_core::effects::Mount;
-use pam_core::smoothing::acceleration_weights;
+use pam_muscle::effects::Mount;
+use pam_muscle::smoothing::acceleration_weights;
 
 use super::Residual;
 

@@ -1,9 +1,9 @@
 use super::*;
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::recording::Samples;
+use pam_artifact::ModelArtifact;
 use pam_identification::prepare::{direct, gate};
 use pam_identification::trace::trace;
+use pam_recording::Samples;
 
 use crate::given::tests::{Path, RAMPS, STROKES, artifact, recorded};
 use crate::search::Limits;

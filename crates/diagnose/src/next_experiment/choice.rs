@@ -1,8 +1,8 @@
 //! The protocol that tells explanations apart, or confirms one.
 
-use pam_core::artifact::diagnosis::{NextExperiment, Region, Verdict};
-use pam_core::artifact::model::Domain;
-use pam_core::effects::{Effect, Kind, Page};
+use pam_artifact::diagnosis::{NextExperiment, Region, Verdict};
+use pam_artifact::model::Domain;
+use pam_muscle::effects::{Effect, Kind, Page};
 
 use super::closer::look_closer;
 use super::plan::{planned, run_it};

@@ -1,7 +1,8 @@
 //! What to record where structure is left that has no name.
 
-use pam_core::artifact::diagnosis::{Coordinate, NextExperiment, Region};
-use pam_core::artifact::model::Domain;
+use pam_artifact::diagnosis::{NextExperiment, Region};
+use pam_artifact::model::Domain;
+use pam_muscle::Coordinate;
 
 use super::plan::{planned, run_it};
 use super::setpoints::Setpoints;

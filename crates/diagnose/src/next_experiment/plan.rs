@@ -1,6 +1,6 @@
 //! What is to be recorded, in words and as a path.
 
-use pam_core::artifact::diagnosis::NextExperiment;
+use pam_artifact::diagnosis::NextExperiment;
 
 use super::setpoints::Setpoints;
 use crate::protocols::{Protocol, Reach};

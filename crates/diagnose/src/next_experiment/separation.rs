@@ -1,7 +1,7 @@
 //! How far apart protocols drive explanations.
 
-use pam_core::effects::Role;
-use pam_core::force::columns::ForceColumns;
+use pam_muscle::effects::Role;
+use pam_muscle::force::columns::ForceColumns;
 use rayon::prelude::*;
 
 use crate::design_matrix::Regressors;

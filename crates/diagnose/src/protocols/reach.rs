@@ -1,7 +1,7 @@
 //! Where a muscle may be taken, and the numbers of the protocols scaled to it.
 
-use pam_core::artifact::model::Domain;
-use pam_core::force::ForceModel;
+use pam_artifact::model::Domain;
+use pam_muscle::force::ForceModel;
 
 /// Rest length for which distances and speeds of the protocols are written, in m.
 const REFERENCE_LENGTH_M: f64 = 0.267;

@@ -1,9 +1,9 @@
-use pam_core::artifact::model::Domain;
-use pam_core::effects::effect;
-use pam_core::force::columns::ForceColumns;
-use pam_core::force::{BaseParameters, Form, Parameter};
-use pam_core::muscle::Muscle;
+use pam_artifact::model::Domain;
 use pam_identification::search_space::{Free, LATEX_RATIO, SearchSpace};
+use pam_muscle::Muscle;
+use pam_muscle::effects::effect;
+use pam_muscle::force::columns::ForceColumns;
+use pam_muscle::force::{BaseParameters, Form, Parameter};
 
 use super::*;
 use crate::design_matrix::Regressors;
@@ -127,7 +127,7 @@ impl Given {
             nuisance: &crate::nuisance::NONE,
             floor_square: 0.0,
             goes_on: true,
-            effects: pam_core::effects::CATALOGUE,
+            effects: pam_muscle::effects::CATALOGUE,
         }
     }
 }

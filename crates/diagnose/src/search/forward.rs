@@ -5,7 +5,7 @@
 //! A second selection from the second best first effect, where the first one ended with several, was tried: of 48 cases with two effects
 //! it changed one, for the worse.
 
-use pam_core::effects::Seen;
+use pam_muscle::effects::Seen;
 
 use super::beside::Beside;
 use super::look::{Look, is_strained, promise};

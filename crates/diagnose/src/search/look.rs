@@ -1,6 +1,6 @@
 //! A look at the catalogue on top of what was taken.
 
-use pam_core::effects::{Effect, Role, Seen};
+use pam_muscle::effects::{Effect, Role, Seen};
 
 use super::settle::settle;
 use super::worth::LEAST_LOG_RATIO;

@@ -9,8 +9,8 @@ mod look;
 mod settle;
 mod worth;
 
-use pam_core::artifact::diagnosis::Coordinate;
-use pam_core::effects::{Effect, Seen};
+use pam_muscle::Coordinate;
+use pam_muscle::effects::{Effect, Seen};
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::CandidateEffect;
@@ -142,7 +142,7 @@ pub struct Taken {
 pub fn search(
     setting: &Setting<'_>,
     start: &[f64],
-    model: &pam_core::force::ForceModel,
+    model: &pam_muscle::force::ForceModel,
     limits: &Limits,
     looked: &dyn Fn(),
 ) -> Option<Found> {
@@ -263,7 +263,7 @@ pub(crate) fn again(setting: &Setting<'_>, best: &Judged) -> Option<Judged> {
 mod tests {
     use super::*;
 
-    use pam_core::effects::effect;
+    use pam_muscle::effects::effect;
 
     use crate::hypothesis::Beginning;
     use crate::rehearsal::tests::Given;

@@ -1,6 +1,6 @@
 //! How what was taken settles with what was there: shapes refined, details confirmed, each looked at once more.
 
-use pam_core::effects::{Kind, Seen};
+use pam_muscle::effects::{Kind, Seen};
 
 use super::{Judged, judged};
 use crate::hypothesis::CandidateEffect;

@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use crate::hypothesis::{Beginning, CandidateEffect, Sign};
 
-    use pam_core::effects::effect;
+    use pam_muscle::effects::effect;
 
     fn held(square: f64) -> HeldOut {
         HeldOut { blocks: vec![square; 8], counts: vec![10.0; 8], floor_square: 0.01 }

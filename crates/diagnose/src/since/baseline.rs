@@ -1,11 +1,11 @@
 //! What the model of then knew of its parameters.
 
 use nalgebra::{DMatrix, SymmetricEigen};
-use pam_core::artifact::ModelArtifact;
-use pam_core::effects::{CATALOGUE, Kind, effect};
-use pam_core::force::Parameter;
-use pam_core::force::columns::ForceColumns;
+use pam_artifact::ModelArtifact;
 use pam_identification::search_space::Free;
+use pam_muscle::effects::{CATALOGUE, Kind, effect};
+use pam_muscle::force::Parameter;
+use pam_muscle::force::columns::ForceColumns;
 
 use super::quantity::Quantity;
 use crate::base;

@@ -1,8 +1,8 @@
 //! What may have changed.
 
-use pam_core::effects::{CATALOGUE, Effect, Kind, Role, Seen, Term};
-use pam_core::force::Parameter;
 use pam_identification::search_space::Free;
+use pam_muscle::effects::{CATALOGUE, Effect, Kind, Role, Seen, Term};
+use pam_muscle::force::Parameter;
 
 use super::hypothesis::{Change, Hypothesis, Subject};
 use super::point::Point;

@@ -1,11 +1,11 @@
 //! All of it in order: the model of then and later recordings in, what has changed out.
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::artifact::change::{Change, ChangeCandidate, ChangeConfig, ChangeFit, ChangeVerdict, Compared};
-use pam_core::effects::Seen;
-use pam_core::force::columns::ForceColumns;
-use pam_core::recording::Recording;
+use pam_artifact::ModelArtifact;
+use pam_artifact::change::{Change, ChangeCandidate, ChangeConfig, ChangeFit, ChangeVerdict, Compared};
 use pam_identification::evaluate::{evaluate_augmented, noise_floor_n};
+use pam_muscle::effects::Seen;
+use pam_muscle::force::columns::ForceColumns;
+use pam_recording::Recording;
 
 use super::baseline::Baseline;
 use super::domain::keep_within;

@@ -1,6 +1,6 @@
 //! Later recordings may go where the model of then was never asked: nothing is compared there.
 
-use pam_core::artifact::model::Domain;
+use pam_artifact::model::Domain;
 
 use crate::track::Track;
 

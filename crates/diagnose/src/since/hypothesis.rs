@@ -1,7 +1,7 @@
 //! What is said to have changed, and its fit.
 
-use pam_core::effects::Effect;
 use pam_identification::search_space::Free;
+use pam_muscle::effects::Effect;
 
 use super::nuisances::{by_recording, slope_n};
 use super::point::Point;

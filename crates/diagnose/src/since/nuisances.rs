@@ -1,6 +1,6 @@
 //! What may differ from then without having changed.
 
-use pam_core::force::ForceModel;
+use pam_muscle::force::ForceModel;
 
 use super::baseline::Baseline;
 use super::point::Point;

@@ -1,10 +1,10 @@
 //! The model and the channels as numbers that move, and the force that they give.
 
-use pam_core::effects::{AugmentedModel, Term};
-use pam_core::force::{BaseParameters, ForceModel, Form};
-use pam_core::motion::Instant;
-use pam_core::muscle::Muscle;
-use pam_core::shift::shift;
+use pam_muscle::Muscle;
+use pam_muscle::effects::{AugmentedModel, Term};
+use pam_muscle::force::{BaseParameters, ForceModel, Form};
+use pam_muscle::motion::Instant;
+use pam_muscle::shift::shift;
 use rayon::prelude::*;
 
 use super::quantity::Channel;

@@ -1,7 +1,7 @@
 //! Numbers of a [`Point`] that may differ from then.
 
-use pam_core::force::Parameter;
 use pam_identification::search_space::Free;
+use pam_muscle::force::Parameter;
 
 use super::point::Point;
 

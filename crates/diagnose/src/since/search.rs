@@ -1,7 +1,7 @@
 //! The search: what explains the most is taken, until nothing more is gained.
 
-use pam_core::effects::Seen;
 use pam_identification::search_space::Free;
+use pam_muscle::effects::Seen;
 use rayon::prelude::*;
 
 use super::candidate::{nearby, variants};

@@ -1,6 +1,6 @@
 //! The verdict in words.
 
-use pam_core::artifact::change::{Change, ChangeFit, ChangeKind, ChangeVerdict, Compared};
+use pam_artifact::change::{Change, ChangeFit, ChangeKind, ChangeVerdict, Compared};
 
 /// One or two sentences.
 pub(super) fn statement(verdict: ChangeVerdict, changes: &[Change], fit: &ChangeFit) -> String {

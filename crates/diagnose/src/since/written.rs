@@ -1,8 +1,8 @@
 //! What was found as an artifact has it, and in words.
 
-use pam_core::artifact::change::{Change, ChangeCandidate, ChangeFit, ChangeKind, ChangeVerdict, Compared};
-use pam_core::force::Parameter;
+use pam_artifact::change::{Change, ChangeCandidate, ChangeFit, ChangeKind, ChangeVerdict, Compared};
 use pam_identification::search_space::Free;
+use pam_muscle::force::Parameter;
 
 use super::baseline::Baseline;
 use super::candidate::parameters;

@@ -1,6 +1,6 @@
 //! Names that are let go of, and those that stay.
 
-use pam_core::effects::effect;
+use pam_muscle::effects::effect;
 
 use super::*;
 use crate::hypothesis::{Beginning, Sign};

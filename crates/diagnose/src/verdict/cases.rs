@@ -1,6 +1,6 @@
 //! Sizes and verdicts of searches whose outcome is made up.
 
-use pam_core::effects::effect;
+use pam_muscle::effects::effect;
 
 use super::*;
 use crate::hypothesis::{Beginning, CandidateEffect, Sign};

@@ -100,8 +100,8 @@ fn a_model_that_is_missed_as_given_is_never_consistent_nor_explained() {
 #[test]
 fn a_static_map_is_seen_among_what_is_written() {
     let with_map = weighed(|found, _| {
-        let map = pam_core::effects::Term::new(
-            pam_core::effects::effect(MAP_ID).expect("the map"),
+        let map = pam_muscle::effects::Term::new(
+            pam_muscle::effects::effect(MAP_ID).expect("the map"),
             vec![0.0, 5e5, 0.0, 0.2],
             Vec::new(),
         );
@@ -109,11 +109,8 @@ fn a_static_map_is_seen_among_what_is_written() {
     });
     assert!(with_map.has_map());
     let with_another = weighed(|found, _| {
-        let lag = pam_core::artifact::model::EffectEntry {
-            id: "pressure-lag".to_owned(),
-            sentence: None,
-            parameters: Vec::new(),
-        };
+        let lag =
+            pam_artifact::model::EffectEntry { id: "pressure-lag".to_owned(), sentence: None, parameters: Vec::new() };
         found.entries.push(lag);
     });
     assert!(!with_another.has_map());

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pam_core::spelling::toml_fault;
+use pam_recording::spelling::toml_fault;
 #[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -18,7 +18,7 @@
 //! | memory of effects    | `p = F⁻¹(f - m, l, z)`, `m` what effects beyond eq. 11 add to the settled force now    |
 //! | payload estimation   | weighs the load before the lift: mean of `r F(p_m, l, z)` over the hold              |
 
-use pam_core::effects::AugmentedModel;
+use pam_muscle::effects::AugmentedModel;
 
 use super::{ControlSettings, LengthSource, Observer};
 use crate::arm::{Elbow, Forearm, Lever, LeverAt, Load};

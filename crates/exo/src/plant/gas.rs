@@ -20,7 +20,7 @@
 
 use std::f64::consts::PI;
 
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
 
 /// Exponent of the change of state: seconds are between slow and fast.
 pub const POLYTROPIC: f64 = 1.2;

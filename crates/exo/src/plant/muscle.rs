@@ -18,8 +18,8 @@
 //! model has effects, those that the friction slides by take the place of `z` in eq. 11; `z` is the direction of the
 //! others, and what a Bowden cable rubs by.
 
-use pam_core::effects::AugmentedModel;
-use pam_core::force::{BaseParameters, ForceModel, Parameter};
+use pam_muscle::effects::AugmentedModel;
+use pam_muscle::force::{BaseParameters, ForceModel, Parameter};
 
 use super::Dahl;
 use crate::history::History;

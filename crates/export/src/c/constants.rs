@@ -3,15 +3,15 @@
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::direction::Standstill;
-use pam_core::effects::Term;
-use pam_core::effects::moment::LATEX_C10_SHARE;
-use pam_core::force::braid::Braid;
-use pam_core::force::strand_friction::POISSON_RATIO;
-use pam_core::force::{ForceModel, Form, Parameter};
-use pam_core::motion::NOISE_PER_THRESHOLD;
-use pam_core::smoothing::HALF_WINDOW_S;
+use pam_artifact::ModelArtifact;
+use pam_muscle::direction::Standstill;
+use pam_muscle::effects::Term;
+use pam_muscle::effects::moment::LATEX_C10_SHARE;
+use pam_muscle::force::braid::Braid;
+use pam_muscle::force::strand_friction::POISSON_RATIO;
+use pam_muscle::force::{ForceModel, Form, Parameter};
+use pam_muscle::motion::NOISE_PER_THRESHOLD;
+use pam_muscle::smoothing::HALF_WINDOW_S;
 
 use super::parts::Part;
 

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use pam_core::artifact::ModelArtifact;
-use pam_core::effects::{AugmentedModel, Role, Term};
+use pam_artifact::ModelArtifact;
 use pam_inverse_model::InverseNetwork;
+use pam_muscle::effects::{AugmentedModel, Role, Term};
 
 use super::constants::{defines, of_direction, of_effects, of_eq11};
 use super::inverse;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use pam_core::artifact::inverse::Activation;
+use pam_artifact::inverse::Activation;
 use pam_inverse_model::InverseNetwork;
 
 use super::constants::{defines, number};

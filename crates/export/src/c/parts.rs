@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use pam_core::effects::Role;
+use pam_muscle::effects::Role;
 
 pub(super) const MOMENT: &str = include_str!("templates/moment.h");
 pub(super) const EQ11: &str = include_str!("templates/eq11.h");
@@ -154,7 +154,7 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pam_core::effects::{CATALOGUE, Kind, NAMELESS, effect};
+    use pam_muscle::effects::{CATALOGUE, Kind, NAMELESS, effect};
 
     #[test]
     fn every_effect_that_is_a_force_has_a_part() {

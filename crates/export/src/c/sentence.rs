@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use pam_core::effects::Amplitude;
-use pam_core::effects::sentence::{Curve, Driver, Recall, Scale, Sentence};
+use pam_muscle::effects::Amplitude;
+use pam_muscle::effects::sentence::{Curve, Driver, Recall, Scale, Sentence};
 
 use super::constants::{number, parameter};
 use super::parts::Part;

@@ -9,7 +9,7 @@
 
 use std::io;
 
-use pam_core::force::columns::ForceColumns;
+use pam_muscle::force::columns::ForceColumns;
 
 use super::reading::{Reading, Wrong};
 use super::zero::{Sample, fitted_n, samples_of, stride, summary_of};

@@ -1,7 +1,7 @@
 //! Channels that are swapped or turned.
 
-use pam_core::muscle::Muscle;
-use pam_core::recording::Recording;
+use pam_muscle::Muscle;
+use pam_recording::Recording;
 
 use super::Fault;
 use crate::prepare::Gated;
@@ -58,7 +58,7 @@ impl Look {
 
 /// Correlation between `force` and an ideal muscle's; free of scale, so that a unit slip does not matter.
 fn ideal_correlation(muscle: &Muscle, pressure: &[f64], length_m: &[f64], force: &[f64]) -> f64 {
-    let gas = pam_core::force::gas::Gas::new(muscle);
+    let gas = pam_muscle::force::gas::Gas::new(muscle);
     let ideal: Vec<f64> = pressure
         .iter()
         .zip(length_m)
@@ -151,7 +151,7 @@ mod tests {
     use super::*;
 
     use crate::prepare::gate;
-    use pam_core::recording::{Repairs, Samples};
+    use pam_recording::{Repairs, Samples};
 
     #[test]
     fn millimeters_under_the_name_of_newtons_are_found() {

@@ -13,9 +13,9 @@
 
 use std::collections::BTreeMap;
 
-use pam_core::muscle::Muscle;
-use pam_core::quality::RecordingQuality;
-use pam_core::recording::Recording;
+use pam_muscle::Muscle;
+use pam_recording::Recording;
+use pam_recording::quality::RecordingQuality;
 
 use super::Fault;
 use super::channels::Look;

@@ -11,7 +11,7 @@
 use std::io;
 use std::ops::Range;
 
-use pam_core::recording::{Chunk, Recording};
+use pam_recording::{Chunk, Recording};
 
 use super::Fault;
 use super::smooth_map::{SmoothMap, Sums};
@@ -139,7 +139,7 @@ pub fn find(recording: &Recording) -> io::Result<Option<Fault>> {
         }
         runs.close();
         let at_s = |row: usize| -> io::Result<f64> {
-            let chunk = recording.samples.chunk(row / pam_core::recording::CHUNK_ROWS)?;
+            let chunk = recording.samples.chunk(row / pam_recording::CHUNK_ROWS)?;
             Ok(chunk.time_s()[row - chunk.first_row()])
         };
         // At its low end a force is slack, unless pressure and length say that the muscle pulls.

@@ -11,9 +11,9 @@
 //! so that every shift but none explained more of a clean recording, up to 14 ms of it. What lies between two rows is read
 //! off a parabola. A window lasts long enough that every shift sees the same rows, at every rate.
 
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
-use pam_core::recording::CHUNK_ROWS;
+use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
 use pam_optim::gathered::Gathered;
+use pam_recording::CHUNK_ROWS;
 use rayon::prelude::*;
 
 use crate::prepare::Prepared;

@@ -25,7 +25,7 @@ pub mod twice;
 pub mod zero;
 
 use crate::prepare::Gated;
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
 
 /// A fault that makes a fit pointless.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -3,7 +3,7 @@
 //! The noise floor of the sensors is subtracted wherever a model is judged, so that a recording with a hum of
 //! fifty newtons is followed as well as can be, by every model. That is true, and worth nothing unless it is said.
 
-use pam_core::force::ForceModel;
+use pam_muscle::force::ForceModel;
 
 use crate::error::IdentifyError;
 use crate::evaluate::{evaluate, noise_floor_n};

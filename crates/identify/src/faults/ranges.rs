@@ -1,6 +1,6 @@
 //! Ranges that no muscle has, and the unit that would explain them.
 
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
 
 use super::Fault;
 use crate::prepare::Gated;
@@ -37,7 +37,7 @@ fn peak_forces_n(gate: &Gated, muscle: &Muscle) -> Option<(f64, f64)> {
     let pressure = gate.quality.channel("pressure")?;
     let length = gate.quality.channel("length")?;
     let contraction = muscle.contraction_ratio(length.highest).clamp(-0.02, 0.9 * muscle.max_contraction_ratio());
-    let ideal_n = pam_core::force::gas::Gas::new(muscle).force_n(pressure.highest, contraction, 1.0, 1.0);
+    let ideal_n = pam_muscle::force::gas::Gas::new(muscle).force_n(pressure.highest, contraction, 1.0, 1.0);
     Some((force.highest.max(-force.lowest), ideal_n))
 }
 

@@ -14,9 +14,9 @@
 //! as much as that; faults that explain as much are said beside it. Where none does, it is the muscle that is another, or physics
 //! that the model lacks.
 
-use pam_core::artifact::{InputRole, ModelArtifact};
-use pam_core::effects::AugmentedModel;
-use pam_core::force::ForceModel;
+use pam_artifact::{InputRole, ModelArtifact};
+use pam_muscle::effects::AugmentedModel;
+use pam_muscle::force::ForceModel;
 
 use super::noise;
 use super::scale::unit_words;
@@ -318,8 +318,8 @@ fn interpolated(time_s: &[f64], values: &[f64], at: usize, after_s: f64) -> f64 
 mod tests {
     use super::*;
 
-    use pam_core::force::{BaseParameters, Form};
-    use pam_core::muscle::Muscle;
+    use pam_muscle::Muscle;
+    use pam_muscle::force::{BaseParameters, Form};
 
     use crate::testing::model;
 

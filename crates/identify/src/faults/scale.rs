@@ -16,9 +16,9 @@
 //! A gain that no muscle has and that a pair of units explains is a unit under the wrong name.
 
 use nalgebra::{Matrix4, Vector4};
-use pam_core::force::bladder::Bladder;
-use pam_core::force::gas::Gas;
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
+use pam_muscle::force::bladder::Bladder;
+use pam_muscle::force::gas::Gas;
 
 use super::Fault;
 use super::channels::Look;

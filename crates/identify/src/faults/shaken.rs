@@ -8,8 +8,8 @@
 use std::io;
 use std::ops::Range;
 
-use pam_core::quality::RecordingQuality;
-use pam_core::recording::{CHUNK_ROWS, Chunk, Recording};
+use pam_recording::quality::RecordingQuality;
+use pam_recording::{CHUNK_ROWS, Chunk, Recording};
 
 /// Windows that are looked at, in s: two swings of a hand, which trembles at 6 to 12 Hz.
 const WINDOW_S: f64 = 0.3;
@@ -173,7 +173,7 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    use pam_core::recording::Samples;
+    use pam_recording::Samples;
 
     use crate::testing::recording;
 

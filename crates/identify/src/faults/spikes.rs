@@ -7,8 +7,8 @@
 
 use std::io;
 
-use pam_core::quality::RecordingQuality;
-use pam_core::recording::{Chunk, Recording};
+use pam_recording::quality::RecordingQuality;
+use pam_recording::{Chunk, Recording};
 
 use super::Fault;
 use crate::prepare::Gated;

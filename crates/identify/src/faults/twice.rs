@@ -3,7 +3,7 @@
 //! Fitted twice, its samples count twice and standard errors shrink for nothing; fitted and held out, it proves nothing. Its
 //! samples tell, not its name: see [`first_shared`].
 
-use pam_core::recording::{Recording, first_shared, repeats_itself};
+use pam_recording::{Recording, first_shared, repeats_itself};
 
 use crate::error::IdentifyError;
 

@@ -7,7 +7,7 @@
 
 use std::io;
 
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
+use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
 use pam_optim::gathered::Gathered;
 use pam_optim::polish::descend;
 use pam_optim::summary::Summary;

@@ -3,17 +3,17 @@
 use std::io;
 use std::ops::Range;
 
-use pam_core::artifact::agreement::{AgreementArtifact, CutRecording, Hypothesis, Question};
-use pam_core::artifact::summary::{Answer, Ends, Open, Rows, StretchPart, Triangle};
-use pam_core::direction::{Carried, Direction, Standstill, Thresholds};
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
-use pam_core::force::{BaseParameters, ForceModel, Form};
-use pam_core::muscle::MuscleFile;
-use pam_core::quality::parts::sampled_chunks;
-use pam_core::quality::stuck::StuckRuns;
-use pam_core::quality::{RecordingQuality, SensorEnds};
-use pam_core::recording::{CHUNK_ROWS, Recording};
+use pam_artifact::agreement::{AgreementArtifact, CutRecording, Hypothesis, Question};
+use pam_artifact::summary::{Answer, Ends, Open, Rows, StretchPart, Triangle};
+use pam_muscle::MuscleFile;
+use pam_muscle::direction::{Carried, Direction, Standstill, Thresholds};
+use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
+use pam_muscle::force::{BaseParameters, ForceModel, Form};
 use pam_optim::gathered::Gathered;
+use pam_recording::quality::parts::sampled_chunks;
+use pam_recording::quality::stuck::StuckRuns;
+use pam_recording::quality::{RecordingQuality, SensorEnds};
+use pam_recording::{CHUNK_ROWS, Recording};
 use rayon::prelude::*;
 
 use super::error::ShardError;
@@ -97,8 +97,8 @@ fn begins_of(question: &Question, index: usize, shard: usize) -> Vec<Carried> {
 
 /// The answer of a shard that has no rows of its own to count.
 fn nothing(question: &Question) -> Answer {
-    use pam_core::artifact::summary::TallySums;
-    use pam_core::quality::recording::Rates;
+    use pam_artifact::summary::TallySums;
+    use pam_recording::quality::recording::Rates;
     match question {
         Question::Sample {} => Answer::Extent {},
         Question::Exclude { .. } => Answer::Excluded {

@@ -2,11 +2,11 @@
 
 use std::cell::RefCell;
 
-use pam_core::artifact::agreement::AgreementArtifact;
-use pam_core::artifact::model::StandstillFit;
-use pam_core::direction::{Direction, Standstill, Thresholds};
-use pam_core::force::columns::{ForceColumns, N_COLUMNS};
-use pam_core::recording::Samples;
+use pam_artifact::agreement::AgreementArtifact;
+use pam_artifact::model::StandstillFit;
+use pam_muscle::direction::{Direction, Standstill, Thresholds};
+use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
+use pam_recording::Samples;
 
 use super::answer::Shared;
 use super::error::ShardError;
@@ -68,7 +68,7 @@ pub(super) fn judged(agreement: &AgreementArtifact) -> Result<Vec<StandstillFit>
     judge_by(&fitted).map_err(|()| missing.take())
 }
 
-fn matches(law: &pam_core::artifact::agreement::JudgedLaw, standstill: Standstill, late: bool) -> bool {
+fn matches(law: &pam_artifact::agreement::JudgedLaw, standstill: Standstill, late: bool) -> bool {
     law.late == late && law.fit.standstill == standstill
 }
 

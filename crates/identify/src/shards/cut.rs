@@ -1,8 +1,8 @@
 //! Shards put together into recordings.
 
-use pam_core::artifact::agreement::CutRecording;
-use pam_core::artifact::summary::{Shard, SummaryArtifact};
-use pam_core::recording::Repairs;
+use pam_artifact::agreement::CutRecording;
+use pam_artifact::summary::{Shard, SummaryArtifact};
+use pam_recording::Repairs;
 
 use super::error::ShardError;
 
@@ -51,7 +51,7 @@ pub fn recordings(summaries: &[SummaryArtifact]) -> Result<(Vec<CutRecording>, V
 
 /// Refuses summaries that were made otherwise.
 pub(super) fn alike(one: &SummaryArtifact, other: &SummaryArtifact) -> Result<(), ShardError> {
-    use pam_core::artifact::InputRole;
+    use pam_artifact::InputRole;
     let muscle = |summary: &SummaryArtifact| {
         let muscle = summary.inputs.iter().find(|input| input.role == InputRole::Muscle);
         muscle.map(|input| input.sha256.clone())

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use pam_core::artifact::agreement::{Begins, CutRecording, Question};
-use pam_core::artifact::summary::{Answer, Ends, Open, Rows, SummaryArtifact};
-use pam_core::direction::Carried;
-use pam_core::recording::Samples;
+use pam_artifact::agreement::{Begins, CutRecording, Question};
+use pam_artifact::summary::{Answer, Ends, Open, Rows, SummaryArtifact};
+use pam_muscle::direction::Carried;
+use pam_recording::Samples;
 
 use super::answer::{Shared, answer_of};
 use super::error::ShardError;

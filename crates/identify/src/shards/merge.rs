@@ -1,16 +1,14 @@
 //! Answers put together, and the next question.
 
-use pam_core::artifact::agreement::{
-    AgreementArtifact, Begins, CutRecording, Hypothesis, JudgedLaw, LawBegins, Question,
-};
-use pam_core::artifact::model::{IdentifyConfig, StandstillFit};
-use pam_core::artifact::summary::{Answer, Rows, StretchPart, SummaryArtifact, TallySums, Triangle};
-use pam_core::direction::{Carried, Standstill, Thresholds};
-use pam_core::quality::RecordingQuality;
-use pam_core::quality::recording::Rates;
-use pam_core::quality::stuck::StuckRuns;
-use pam_core::recording::Samples;
+use pam_artifact::agreement::{AgreementArtifact, Begins, CutRecording, Hypothesis, JudgedLaw, LawBegins, Question};
+use pam_artifact::model::{IdentifyConfig, StandstillFit};
+use pam_artifact::summary::{Answer, Rows, StretchPart, SummaryArtifact, TallySums, Triangle};
+use pam_muscle::direction::{Carried, Standstill, Thresholds};
 use pam_optim::summary::Summary;
+use pam_recording::Samples;
+use pam_recording::quality::RecordingQuality;
+use pam_recording::quality::recording::Rates;
+use pam_recording::quality::stuck::StuckRuns;
 
 use super::answer::Shared;
 use super::conclude::{self, conclude};
@@ -162,7 +160,7 @@ pub fn advance(
 fn first(recordings: Vec<CutRecording>, summaries: &[SummaryArtifact]) -> AgreementArtifact {
     let largest = recordings.iter().map(|cut| cut.extent.largest_pressure_length_n_per_m).fold(0.0, f64::max);
     AgreementArtifact {
-        schema: pam_core::artifact::agreement::SCHEMA.to_owned(),
+        schema: pam_artifact::agreement::SCHEMA.to_owned(),
         tool: summaries[0].tool.clone(),
         inputs: Vec::new(),
         reading_sha256: summaries[0].reading_sha256.clone(),

@@ -7,7 +7,7 @@
 //! # Design
 //! What a fit needs of a recording are sums over rows, which merge; but which rows count and which way friction acts in them is
 //! found by averages, plays and rests that look far around. They look no further than the border of a stretch of
-//! [`STRETCH_ROWS`](pam_core::direction::STRETCH_ROWS) rows, counted from the last gap, and what is carried across it is one state.
+//! [`STRETCH_ROWS`](pam_muscle::direction::STRETCH_ROWS) rows, counted from the last gap, and what is carried across it is one state.
 //! So a shard works on the stretches that it has all rows of, and hands over the others as they are: the place that merges has
 //! both sides of a cut, puts the stretch together and works on it as a shard would. Every row then goes through the same
 //! operations, on the same numbers and in the same order, as in one process: directions, excluded samples, noise and thresholds

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use pam_core::artifact::agreement::CutRecording;
-use pam_core::direction::STRETCH_ROWS;
-use pam_core::recording::CHUNK_ROWS;
+use pam_artifact::agreement::CutRecording;
+use pam_muscle::direction::STRETCH_ROWS;
+use pam_recording::CHUNK_ROWS;
 
 /// Rows that are looked at beyond those that are counted, at least: what a late pressure is compared over.
 pub(super) const BESIDE_ROWS: usize = 1024;
@@ -67,9 +67,9 @@ fn held(owned: Range<usize>, n_rows: usize) -> Range<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pam_core::artifact::summary::Shard;
-    use pam_core::quality::parts::Extent;
-    use pam_core::recording::Repairs;
+    use pam_artifact::summary::Shard;
+    use pam_recording::Repairs;
+    use pam_recording::quality::parts::Extent;
 
     fn cut(n_rows: usize, segments: &[usize], cuts: &[usize]) -> CutRecording {
         let ranges = |inner: &[usize]| {

@@ -1,11 +1,11 @@
 //! The summary of a shard.
 
-use pam_core::artifact::agreement::AgreementArtifact;
-use pam_core::artifact::summary::{Answer, SCHEMA, Shard, SummaryArtifact};
-use pam_core::artifact::{Input, Tool};
-use pam_core::muscle::MuscleFile;
-use pam_core::quality::parts::Extent;
-use pam_core::recording::{CHUNK_ROWS, Recording};
+use pam_artifact::agreement::AgreementArtifact;
+use pam_artifact::summary::{Answer, SCHEMA, Shard, SummaryArtifact};
+use pam_artifact::{Input, Tool};
+use pam_muscle::MuscleFile;
+use pam_recording::quality::parts::Extent;
+use pam_recording::{CHUNK_ROWS, Recording};
 
 use super::answer::answer;
 use super::cut::TIMES;

@@ -3,11 +3,11 @@
 use std::io;
 use std::ops::Range;
 
-use pam_core::artifact::agreement::CutRecording;
-use pam_core::artifact::summary::{Ends, Rows};
-use pam_core::direction::{Carried, Direction, Driver, Piece, Thresholds};
-use pam_core::quality::RecordingQuality;
-use pam_core::recording::{CHUNK_ROWS, Recording, Samples};
+use pam_artifact::agreement::CutRecording;
+use pam_artifact::summary::{Ends, Rows};
+use pam_muscle::direction::{Carried, Direction, Driver, Piece, Thresholds};
+use pam_recording::quality::RecordingQuality;
+use pam_recording::{CHUNK_ROWS, Recording, Samples};
 
 use super::parts::Part;
 use crate::prepare::Prepared;

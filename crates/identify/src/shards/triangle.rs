@@ -1,6 +1,6 @@
 //! Summaries as artifacts carry them.
 
-use pam_core::artifact::summary::Triangle;
+use pam_artifact::summary::Triangle;
 use pam_optim::summary::Summary;
 
 /// As an artifact carries it.

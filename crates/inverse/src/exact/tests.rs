@@ -1,7 +1,7 @@
 use super::*;
-use pam_core::effects::{Term, effect};
-use pam_core::force::{BaseParameters, ForceModel, Form};
-use pam_core::muscle::Muscle;
+use pam_muscle::Muscle;
+use pam_muscle::effects::{Term, effect};
+use pam_muscle::force::{BaseParameters, ForceModel, Form};
 
 fn muscle() -> Muscle {
     Muscle::nominal()

@@ -1,6 +1,6 @@
 //! Content of the page, section by section.
 
-use pam_core::artifact::diagnosis::Coordinate;
+use pam_muscle::Coordinate;
 
 use super::{PageEmpirical, PageRecording};
 

@@ -1,6 +1,6 @@
 //! Coordinates of a residual, in the units that people use.
 
-use pam_core::artifact::diagnosis::Coordinate;
+use pam_muscle::Coordinate;
 
 use crate::number::significant;
 

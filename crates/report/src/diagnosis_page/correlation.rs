@@ -176,7 +176,7 @@ fn stretches<'a>(
 mod tests {
     use super::*;
     use crate::diagnosis_page::PageRecording;
-    use pam_core::artifact::diagnosis::Coordinate;
+    use pam_muscle::Coordinate;
 
     /// A residual of `e` and a pressure of `u`, at 100 Hz.
     fn samples(n: usize, e: impl Fn(usize) -> f64, u: impl Fn(usize) -> f64) -> Samples {

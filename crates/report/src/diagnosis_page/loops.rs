@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pam_core::artifact::diagnosis::Coordinate;
+use pam_muscle::Coordinate;
 
 use super::coordinate::OnPage as _;
 use super::course::{parabola, running_means};

@@ -1,6 +1,6 @@
 //! Figure: residual against each coordinate, as small multiples of one height.
 
-use pam_core::artifact::diagnosis::Coordinate;
+use pam_muscle::Coordinate;
 
 use super::PageRegion;
 use super::coordinate::OnPage as _;

@@ -1,6 +1,6 @@
 //! Figure: residual over pressure and contraction, before and after, mean and root mean square.
 
-use pam_core::artifact::diagnosis::Coordinate;
+use pam_muscle::Coordinate;
 
 use super::PageRegion;
 use super::coordinate::OnPage as _;

@@ -1,6 +1,6 @@
 //! A recording reduced to the samples that can be shown.
 
-use pam_core::artifact::diagnosis::Coordinate;
+use pam_muscle::Coordinate;
 
 use super::PageRecording;
 use crate::FigureError;

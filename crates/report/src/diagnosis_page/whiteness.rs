@@ -1,6 +1,6 @@
 //! Whether the residual is white, and whether it still follows the channels.
 
-use pam_core::artifact::diagnosis::Coordinate;
+use pam_muscle::Coordinate;
 
 use super::correlation::{Correlation, autocorrelation, cross_correlation};
 use super::samples::Samples;

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::{fuzz_mutator, fuzz_target};
-use pam_core::artifact::DiagnosisArtifact;
+use pam_artifact::DiagnosisArtifact;
 use pam_fuzz::{json, with_file};
 
 fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| { json::mutate(data, size, max_size, seed) });

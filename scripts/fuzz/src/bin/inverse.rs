@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::{fuzz_mutator, fuzz_target};
-use pam_core::artifact::InverseArtifact;
+use pam_artifact::InverseArtifact;
 use pam_fuzz::{json, with_file};
 use pam_inverse_model::InverseNetwork;
 

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::{fuzz_mutator, fuzz_target};
-use pam_core::artifact::ModelArtifact;
+use pam_artifact::ModelArtifact;
 use pam_exo::uncertainty::Uncertainty;
 use pam_fuzz::{json, short_recording, with_file};
 use pam_identification::evaluate::evaluate_augmented;

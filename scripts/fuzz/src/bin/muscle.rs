@@ -3,8 +3,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use pam_core::muscle::MuscleFile;
 use pam_fuzz::{fit_shortly, short_recording, with_file};
+use pam_muscle::MuscleFile;
 use pam_virtual_bench::Bench;
 use pam_virtual_bench::parameters::Parameters;
 use pam_virtual_bench::protocol::{Options, command};

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use pam_core::recording::{Calibration, ColumnMap, Columns, FixedChannel};
+use pam_recording::{Calibration, ColumnMap, Columns, FixedChannel};
 
 fuzz_target!(|text: &str| {
     let _ = text.parse::<Columns>().map_err(|error| error.to_string());

@@ -5,10 +5,10 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use pam_core::quality::RecordingQuality;
-use pam_core::recording::{ReadOptions, read_recording};
 use pam_fuzz::{fit_shortly, nominal_model, nominal_muscle, with_file};
 use pam_identification::predict::{augmented_forces_n, outside, prepare};
+use pam_recording::quality::RecordingQuality;
+use pam_recording::{ReadOptions, read_recording};
 
 fn options(choice: u8) -> ReadOptions {
     let mut options = ReadOptions {

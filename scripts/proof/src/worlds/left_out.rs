@@ -1,6 +1,6 @@
 //! Leave one out: an effect is concealed and taken out of the catalogue, so that only a term without a name can model it.
 
-use pam_core::effects::effect;
+use pam_muscle::effects::effect;
 use serde::Serialize;
 
 use super::ceiling::median;

@@ -3,7 +3,7 @@ use super::*;
 use crate::hypothesis::Sign;
 
 fn mass() -> CandidateEffect {
-    let effect = pam_core::effects::effect("inertia").expect("an id");
+    let effect = pam_muscle::effects::effect("inertia").expect("an id");
     CandidateEffect { effect, shape: vec![200.0], sign: Sign::Any, beginning: Beginning::Fresh }
 }
 
@@ -13,7 +13,7 @@ fn estimate(mass_kg: f64, error_kg: f64) -> Estimate {
 
 #[test]
 fn shapes_that_make_up_for_one_another_are_found_both() {
-    let effect = pam_core::effects::effect("channel-delay").expect("an id");
+    let effect = pam_muscle::effects::effect("channel-delay").expect("an id");
     let start = CandidateEffect { effect, shape: vec![0.005, 0.02], sign: Sign::Any, beginning: Beginning::Fresh };
     // A valley along the sum, which steps along one shape at a time do not get out of.
     let gains = |guess: &CandidateEffect| {

@@ -1,6 +1,6 @@
 use super::*;
 
-use pam_core::effects::effect;
+use pam_muscle::effects::effect;
 
 use crate::hypothesis::Sign;
 use crate::joint::HeldOut;

@@ -1,6 +1,6 @@
 //! What must be gained, to the edge.
 
-use pam_core::effects::effect;
+use pam_muscle::effects::effect;
 
 use super::*;
 use crate::hypothesis::{Beginning, CandidateEffect, Sign};

@@ -1,6 +1,6 @@
 //! Where what must be gained ends: a little more is enough, and as much is not.
 
-use pam_core::effects::effect;
+use pam_muscle::effects::effect;
 
 use super::*;
 use crate::hypothesis::{Beginning, CandidateEffect, Sign};

@@ -1,6 +1,6 @@
 use super::*;
 
-use pam_core::recording::{Repairs, Samples};
+use pam_recording::{Repairs, Samples};
 
 fn runs(values: &[f64]) -> Option<(f64, usize, usize)> {
     let (lowest, highest) =

@@ -1,10 +1,10 @@
 use super::*;
 use std::path::Path;
 
-use pam_core::direction::{Standstill, Thresholds};
-use pam_core::force::{BaseParameters, ForceModel, Form};
-use pam_core::muscle::MuscleFile;
-use pam_core::recording::{Recording, Repairs, Samples};
+use pam_muscle::MuscleFile;
+use pam_muscle::direction::{Standstill, Thresholds};
+use pam_muscle::force::{BaseParameters, ForceModel, Form};
+use pam_recording::{Recording, Repairs, Samples};
 use rand::{RngExt, SeedableRng};
 
 use crate::prepare::{direct, gate};

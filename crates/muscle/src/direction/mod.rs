@@ -1,0 +1,442 @@
+//! Direction in which friction acts: +1 after contracting, -1 after extending, and between the two while it turns over.
+//!
+//! Friction changes sign with the direction of motion, which a noisy velocity cannot give. The direction is therefore
+//! a *play* on the length: it flips once the length has turned back by a threshold.
+//!
+//! In a recording the future is known, so a flip is dated back to where the motion turned. How exactly that
+//! is known depends on the noise: around it the direction is *unsettled*, and a fit does not count those
+//! samples, as little as those of a sensor that is out of its range.
+//!
+//! A turn is the vertex of the parabola or the corner of the two lines that describe the length around it, whichever leaves
+//! less: the play alone notices it a threshold late. After it friction keeps its sign over some tens of micrometers
+//! ([`Thresholds::held_m`], the play of joints and strands) and goes to the other one within some more
+//! ([`Thresholds::turn_m`], their give): what the recordings say.
+//!
+//! What friction does where the length stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
+//! keeps its last sign, or the strands slide under rising (+1, as if contracting) and falling pressure (-1), at once or only
+//! after the pressure has turned back by some amount. At the beginning of a segment nothing is known of it until the first
+//! motion: the state is zero there and the samples are unsettled. In a segment in which nothing ever moves it stays zero, and
+//! its samples count.
+//!
+//! # Design
+//! The play acts on a centered moving average, because the range that white noise covers grows without end:
+//! five standard deviations of the raw channel would flip within seconds of a hold. Five of the raw channel
+//! are at least eleven of the average over [`WINDOW_S`] or five samples.
+
+use std::io;
+use std::ops::Range;
+
+use pam_recording::{CHUNK_ROWS, Chunk, Recording};
+#[cfg(feature = "schemas")]
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+mod carried;
+mod rest;
+mod states;
+mod turn;
+
+use states::{Bounds, State, Unturned, moving_average, slide};
+
+pub use carried::{Carried, Piece};
+pub use rest::STANDSTILL_S;
+pub use states::WINDOW_S;
+
+/// Rows that are worked on at a time, from the beginning of a segment on; across a border between two nothing is remembered but a
+/// state.
+pub const STRETCH_ROWS: usize = 1 << 18;
+
+/// What friction does while the length stands still.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Standstill {
+    /// It keeps the sign of the last motion, whatever the pressure does.
+    Held,
+    /// It follows the pressure, and has turned over once the pressure has turned back by so much.
+    Slides {
+        /// From one sign to the other, in Pa.
+        over_pa: f64,
+        /// Share of the friction that the pressure brings about at most; models that do not say have all of it.
+        #[serde(default = "all", skip_serializing_if = "is_all")]
+        share: f64,
+    },
+}
+
+impl Standstill {
+    /// Turned over by any change of the pressure that is not noise.
+    pub const AT_ONCE: Self = Self::Slides { over_pa: 0.0, share: 1.0 };
+
+    /// In words.
+    pub fn words(self) -> String {
+        match self {
+            Self::Held => "friction is held at standstill".to_owned(),
+            Self::Slides { over_pa, share } => {
+                let turns = if over_pa > 0.0 {
+                    format!("friction at standstill turns over with {:.1} kPa of pressure", over_pa * 1e-3)
+                } else {
+                    "friction at standstill follows the pressure".to_owned()
+                };
+                if share < 1.0 { format!("{turns}, {:.0} % of it", 100.0 * share) } else { turns }
+            }
+        }
+    }
+}
+
+fn all() -> f64 {
+    1.0
+}
+
+/// What serde asks for is a reference.
+#[expect(clippy::trivially_copy_pass_by_ref)]
+fn is_all(share: &f64) -> bool {
+    *share >= 1.0
+}
+
+/// How the direction is found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Thresholds {
+    /// By how much the length turns back before the direction flips, in m.
+    pub length_m: f64,
+    /// Likewise for the pressure, where the length stands still, in Pa.
+    pub pressure_pa: f64,
+    /// Travel back from a reversal over which friction keeps its sign, in m; models that do not say keep it over none.
+    #[serde(default)]
+    pub held_m: f64,
+    /// Travel after that in which friction turns over, in m; models that do not say turn over at once.
+    #[serde(default)]
+    pub turn_m: f64,
+    /// What friction does while the length stands still; models that do not say follow the pressure at once.
+    #[serde(default = "at_once")]
+    pub standstill: Standstill,
+}
+
+fn at_once() -> Standstill {
+    Standstill::AT_ONCE
+}
+
+/// What the direction follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Driver {
+    /// The length, and the pressure where the length stands still.
+    Motion,
+    /// The pressure alone: "inflation" and "deflation" as the paper prints them.
+    Pressure,
+}
+
+/// Direction of every row of a recording.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Direction {
+    /// In hundredths.
+    states: Vec<i8>,
+    settled: Vec<bool>,
+    /// Whether the direction is known at all: some motion came before it in its segment.
+    known: Vec<bool>,
+    /// Rows that no fit counts for another reason.
+    left_out: Vec<Range<usize>>,
+}
+
+/// Beginnings that are tried on either side of zero.
+const BEGINNINGS: i32 = 20;
+/// Hundredths of a state.
+const STEPS: f64 = 100.0;
+
+impl Direction {
+    /// Directions of `recording`.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of(recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
+        Self::of_first(recording.samples.n_rows(), recording, thresholds, driver)
+    }
+
+    /// Directions of the first `n_rows` of `recording`.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of_first(n_rows: usize, recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
+        let travels = [(thresholds.held_m, thresholds.turn_m)];
+        Ok(Self::of_first_turning(n_rows, recording, thresholds, driver, &travels)?.remove(0))
+    }
+
+    /// The same with each of the `travels` (`held_m`, `turn_m`) in place of those of `thresholds`. All else is found once.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of_first_turning(
+        n_rows: usize,
+        recording: &Recording,
+        thresholds: Thresholds,
+        driver: Driver,
+        travels: &[(f64, f64)],
+    ) -> io::Result<Vec<Self>> {
+        let pieces = recording.segments.iter().map(|segment| Piece {
+            rows: segment.start.min(n_rows)..segment.end.min(n_rows),
+            carried: Carried::UNKNOWN,
+        });
+        let all = Self::of_pieces(n_rows, recording, &pieces.collect::<Vec<_>>(), thresholds, driver, travels)?;
+        // What nothing moves from beginning to end counts without friction, or nothing would.
+        let counted = |(direction, _): (Self, Carried)| if direction.knows() { direction } else { direction.at_rest() };
+        Ok(all.into_iter().map(counted).collect())
+    }
+
+    /// Directions of `pieces` of the first `n_rows` of `recording`, ascending, with what each of the `travels` carries on from the
+    /// last of them. Rows beside them are unsettled. A piece that goes on in a segment begins a multiple of [`STRETCH_ROWS`] after
+    /// it began, and ends there or with it: then its states are, to the bit, those that the whole segment has there.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of_pieces(
+        n_rows: usize,
+        recording: &Recording,
+        pieces: &[Piece],
+        thresholds: Thresholds,
+        driver: Driver,
+        travels: &[(f64, f64)],
+    ) -> io::Result<Vec<(Self, Carried)>> {
+        let turns = travels.iter().any(|(held_m, turn_m)| *held_m > 0.0 || *turn_m > 0.0);
+        let empty = || Self {
+            states: Vec::with_capacity(n_rows),
+            settled: Vec::with_capacity(n_rows),
+            known: Vec::with_capacity(n_rows),
+            left_out: Vec::new(),
+        };
+        let mut all: Vec<(Self, Carried)> = travels.iter().map(|_| (empty(), Carried::UNKNOWN)).collect();
+        for Piece { rows: piece, carried } in pieces {
+            for (direction, ends) in &mut all {
+                direction.skip_to(piece.start);
+                *ends = *carried;
+            }
+            for start in piece.clone().step_by(STRETCH_ROWS) {
+                let end = (start + STRETCH_ROWS).min(piece.end);
+                let (time_s, pressure_pa, length_m) = rows(recording, &(start..end))?;
+                let unturned =
+                    |before| Unturned::of(&time_s, &pressure_pa, &length_m, thresholds, driver, before, turns);
+                // What came before this stretch may have turned over within one travel and not within another.
+                let mut begun: Option<(Bounds, Unturned)> = None;
+                for ((direction, before), &(held_m, turn_m)) in all.iter_mut().zip(travels) {
+                    let found = match begun.take() {
+                        Some((bounds, found)) if bounds == before.bounds() => found,
+                        _ => unturned(before.bounds()),
+                    };
+                    let stretch = found.turned(Thresholds { held_m, turn_m, ..thresholds });
+                    begun = Some((before.bounds(), found));
+                    *before = stretch.last().map_or(*before, |state| Carried::of(state.bounds));
+                    direction.extend(&stretch);
+                }
+            }
+        }
+        all.iter_mut().for_each(|(direction, _)| direction.skip_to(n_rows));
+        Ok(all)
+    }
+
+    /// Of `n_rows` rows of which nothing is known.
+    pub fn nothing(n_rows: usize) -> Self {
+        let (states, settled) = (vec![0; n_rows], vec![false; n_rows]);
+        Self { states, known: settled.clone(), settled, left_out: Vec::new() }
+    }
+
+    /// Leaves rows up to `row` unsettled and unknown.
+    fn skip_to(&mut self, row: usize) {
+        self.states.resize(row, 0);
+        self.settled.resize(row, false);
+        self.known.resize(row, false);
+    }
+
+    /// Whether anything moves.
+    pub fn knows(&self) -> bool {
+        self.known.contains(&true)
+    }
+
+    /// The same where nothing moves in the whole recording: every sample counts, without friction.
+    #[must_use]
+    pub fn at_rest(mut self) -> Self {
+        self.known.fill(true);
+        self.settled.fill(true);
+        self
+    }
+
+    fn extend(&mut self, stretch: &[State]) {
+        for State { bounds, is_settled } in stretch {
+            self.states.push((STEPS * bounds.middle()).round() as i8);
+            self.settled.push(*is_settled && bounds.is_known());
+            self.known.push(bounds.is_known());
+        }
+    }
+
+    /// Direction of a row, in [-1, 1]; 0 where it is not known.
+    pub fn sign(&self, row: usize) -> f64 {
+        f64::from(self.states[row]) / STEPS
+    }
+
+    /// Whether the direction of a row is certain and the row was not left out.
+    pub fn is_settled(&self, row: usize) -> bool {
+        self.settled[row]
+    }
+
+    /// Whether anything has moved since the segment of a row began.
+    pub fn is_known(&self, row: usize) -> bool {
+        self.known[row]
+    }
+
+    /// The same with what friction was at the beginning of every segment of `recording`, of which nothing is known but the force
+    /// recorded there: among all beginnings the one under which `force_n` (of pressure, length and state) comes nearest to
+    /// it. The samples stay unsettled. None where everything is known or no force was recorded.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn begun(
+        &self,
+        recording: &Recording,
+        standstill: Standstill,
+        force_n: &dyn Fn(f64, f64, f64) -> f64,
+    ) -> io::Result<Option<Self>> {
+        if !recording.samples.has_force() || self.known.iter().all(|known| *known) {
+            return Ok(None);
+        }
+        let mut begun = self.clone();
+        for segment in &recording.segments {
+            let unknown = self.known[segment.clone()].iter().take_while(|known| !**known).count();
+            let unknown = segment.start..segment.start + unknown;
+            if unknown.is_empty() {
+                continue;
+            }
+            let (mut pressure_pa, mut without_n, mut with_n) = (Vec::new(), Vec::new(), Vec::new());
+            for_chunks(recording, &unknown, |chunk, rows| {
+                for row in rows {
+                    let (pressure, length) = (chunk.pressure_pa()[row], chunk.length_m()[row]);
+                    let neither_n = force_n(pressure, length, 0.0);
+                    pressure_pa.push(pressure);
+                    without_n.push(chunk.force_n()[row] - neither_n);
+                    with_n.push(force_n(pressure, length, 1.0) - neither_n);
+                }
+            })?;
+            let smooth_pa = moving_average(&pressure_pa, 2);
+            let left = |states: &[State]| -> f64 {
+                let rows = states.iter().zip(without_n.iter().zip(&with_n));
+                rows.map(|(state, (without, with))| (without - state.bounds.middle() * with).powi(2)).sum()
+            };
+            let beginnings = (-BEGINNINGS..=BEGINNINGS).map(|index| f64::from(index) / f64::from(BEGINNINGS));
+            let paths = beginnings.map(|state| {
+                let mut states = vec![State { bounds: Bounds::at(state), is_settled: false }; unknown.len()];
+                if let Standstill::Slides { over_pa, share } = standstill
+                    && (over_pa > 0.0 || share < 1.0)
+                {
+                    slide(&smooth_pa, over_pa, share, Bounds::at(state), &mut states);
+                }
+                (left(&states), states)
+            });
+            if let Some((least, states)) = paths.min_by(|one, other| one.0.total_cmp(&other.0))
+                && least.is_finite()
+            {
+                for (row, state) in unknown.zip(states) {
+                    begun.states[row] = (STEPS * state.bounds.middle()).round() as i8;
+                }
+            }
+        }
+        Ok(Some(begun))
+    }
+
+    /// Leaves `rows` out, whose directions stay what they are.
+    ///
+    /// # Panics
+    /// Where there are not that many rows.
+    pub fn leave_out(&mut self, rows: Range<usize>) {
+        self.settled[rows.clone()].fill(false);
+        self.left_out.push(rows);
+    }
+
+    /// Rows that were left out, in no order.
+    pub fn left_out(&self) -> &[Range<usize>] {
+        &self.left_out
+    }
+
+    /// Rows whose direction is not certain or that were left out.
+    pub fn n_unsettled(&self) -> usize {
+        self.settled.iter().filter(|settled| !**settled).count()
+    }
+
+    /// Times that the direction flips.
+    pub fn n_reversals(&self) -> usize {
+        self.states.windows(2).filter(|pair| pair[0].signum() * pair[1].signum() < 0).count()
+    }
+}
+
+/// Calls `visit` with every chunk that has some of `rows` of `recording`, and which of its own rows those are.
+fn for_chunks(
+    recording: &Recording,
+    rows: &Range<usize>,
+    mut visit: impl FnMut(&Chunk, Range<usize>),
+) -> io::Result<()> {
+    for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
+        let chunk = recording.samples.chunk(index)?;
+        let (first, n) = (chunk.first_row(), chunk.n_rows());
+        visit(&chunk, rows.start.max(first) - first..rows.end.min(first + n) - first);
+    }
+    Ok(())
+}
+
+type Columns = (Vec<f64>, Vec<f64>, Vec<f64>);
+
+/// Time, pressure and length of `rows`.
+fn rows(recording: &Recording, rows: &Range<usize>) -> io::Result<Columns> {
+    let (mut time_s, mut pressure_pa, mut length_m) = (Vec::new(), Vec::new(), Vec::new());
+    for_chunks(recording, rows, |chunk, rows| {
+        time_s.extend_from_slice(&chunk.time_s()[rows.clone()]);
+        pressure_pa.extend_from_slice(&chunk.pressure_pa()[rows.clone()]);
+        length_m.extend_from_slice(&chunk.length_m()[rows]);
+    })?;
+    Ok((time_s, pressure_pa, length_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pam_recording::{Repairs, Samples};
+
+    const HELD: Thresholds =
+        Thresholds { length_m: 1e-4, pressure_pa: 1e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::Held };
+
+    /// Lengths at 100 Hz and constant pressure, with a gap of 5 s before row `gap`.
+    fn recording(length_m: &[f64], gap: usize) -> Recording {
+        let n = length_m.len();
+        let time_s: Vec<f64> = (0..n).map(|row| 0.01 * row as f64 + if row < gap { 0.0 } else { 5.0 }).collect();
+        Recording {
+            path: "gap.csv".to_owned(),
+            sha256: String::new(),
+            samples: Samples::from_columns(&time_s, &vec![2e5; n], length_m, &vec![100.0; n]),
+            segments: vec![0..gap, gap..n],
+            repairs: Repairs::default(),
+            ignored_columns: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn after_a_gap_nothing_is_known_until_something_moves() {
+        // Contracting for 2 s, a gap, at rest for 2 s, extending for 2 s.
+        let length_m: Vec<f64> = (0..600)
+            .map(|row| match row {
+                0..200 => 0.26 - 5e-5 * f64::from(row),
+                200..400 => 0.24,
+                _ => 0.24 + 5e-5 * f64::from(row - 400),
+            })
+            .collect();
+        let direction = Direction::of(&recording(&length_m, 200), HELD, Driver::Motion).expect("directions");
+        assert!(direction.is_known(150) && direction.is_settled(150) && direction.sign(150) > 0.0);
+        assert!((210..380).all(|row| !direction.is_known(row) && !direction.is_settled(row)));
+        assert!(direction.is_settled(550) && direction.sign(550) < 0.0);
+    }
+
+    #[test]
+    fn a_segment_that_never_moves_is_unknown_beside_one_that_does_and_counts_where_none_does() {
+        let known = |travel_m: f64| {
+            let length_m: Vec<f64> = (0..400).map(|row| 0.26 - travel_m * f64::from(row.min(200)) / 200.0).collect();
+            let direction = Direction::of(&recording(&length_m, 200), HELD, Driver::Motion).expect("directions");
+            [direction.is_known(190) && direction.is_settled(190), direction.is_known(300) && direction.is_settled(300)]
+        };
+        assert_eq!(known(0.01), [true, false]);
+        assert_eq!(known(0.0), [true, true]);
+    }
+}

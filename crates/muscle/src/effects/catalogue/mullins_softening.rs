@@ -1,0 +1,250 @@
+//! Mullins softening: rubber is softer below the largest stretch that it has seen.
+//!
+//! ```text
+//! F = F_base - d f [1 - exp(-(ε_m - ε) / ε_c)] - e f [1 - exp(-s / s_c)]
+//! ε_m = max ε so far,   s = ∫ |dε|,   f = V_r dW/dL of latex
+//! ```
+
+use crate::coordinate::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
+use crate::geometry::Muscle;
+
+/// The effect.
+#[derive(Debug)]
+pub(super) struct MullinsSoftening;
+
+impl Effect for MullinsSoftening {
+    fn page(&self) -> &'static Page {
+        &PAGE
+    }
+
+    fn role(&self) -> Role {
+        Role::Pulls
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Muscle
+    }
+
+    fn shape(&self) -> &'static [Shape] {
+        &[
+            Shape {
+                name: "softening_contraction",
+                symbol: "ε_c",
+                unit: "1",
+                range: (3e-3, IN_PROPORTION),
+                grid: &[0.01, 0.03, 0.1],
+            },
+            Shape {
+                name: "settling_travel",
+                symbol: "s_c",
+                unit: "1",
+                range: (SETTLES_AT_ONCE, 5.0),
+                grid: &[0.2, 0.8],
+            },
+        ]
+    }
+
+    fn amplitudes(&self) -> &'static [Amplitude] {
+        &[
+            Amplitude { name: "softening", symbol: "d", unit: "1", range: (0.0, 1.5) },
+            Amplitude { name: "settling", symbol: "e", unit: "1", range: (0.0, 1.5) },
+        ]
+    }
+
+    /// Rubber that settles within its first stroke was stretched for the first time; a softening in proportion to the distance from
+    /// the largest contraction is one of its published forms.
+    fn may_end(&self, index: usize, end: f64) -> bool {
+        [(0, IN_PROPORTION), (1, SETTLES_AT_ONCE)].contains(&(index, end))
+    }
+
+    fn outlasts(&self) -> bool {
+        true
+    }
+
+    fn keeps(&self) -> &'static [Kept] {
+        &[
+            Kept { name: "past_contraction", unit: "1", range: (NEVER, 0.6), fresh: NEVER },
+            Kept { name: "past_travel", unit: "1", range: (0.0, 1e9), fresh: 0.0 },
+        ]
+    }
+
+    fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
+        let &[softening_contraction, settling_travel] = shape else { unreachable!("two shape parameters") };
+        Box::new(State { softening_contraction, settling_travel, largest: NEVER, follower: 0.0, travelled: 0.0 })
+    }
+}
+
+struct State {
+    softening_contraction: f64,
+    settling_travel: f64,
+    /// Largest contraction so far; gaps do not heal the rubber.
+    largest: f64,
+    /// Contraction behind that of the muscle by up to half the play, and the travel of it; that in gaps is left out.
+    follower: f64,
+    travelled: f64,
+}
+
+/// A contraction that no muscle softens over: below it the softening is in proportion.
+const IN_PROPORTION: f64 = 0.3;
+/// Travel of the contraction ratio that is less than a stroke.
+const SETTLES_AT_ONCE: f64 = 0.02;
+/// Largest contraction of rubber that nothing was done to: no muscle is twice as long as at rest.
+const NEVER: f64 = -1.0;
+/// Half the play in the count of travel, in contraction; noise at rest stays inside it.
+const HALF_PLAY: f64 = 5e-4;
+
+impl Memory for State {
+    fn past(&self) -> Vec<f64> {
+        vec![self.largest, self.travelled]
+    }
+
+    fn go_on(&mut self, past: &[f64]) {
+        if let &[largest, travelled] = past {
+            (self.largest, self.travelled) = (largest, travelled);
+        }
+    }
+
+    fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
+        self.largest = self.largest.max(now.contraction_ratio);
+        let below = (self.largest - now.contraction_ratio) / self.softening_contraction;
+        if now.step_s == 0.0 {
+            self.follower = now.contraction_ratio;
+        } else {
+            let followed = self.follower.clamp(now.contraction_ratio - HALF_PLAY, now.contraction_ratio + HALF_PLAY);
+            self.travelled += (followed - self.follower).abs();
+            self.follower = followed;
+        }
+        columns[0] = base.latex_n() * (-below).exp_m1();
+        columns[1] = base.latex_n() * (-self.travelled / self.settling_travel).exp_m1();
+    }
+}
+
+static PAGE: Page = Page {
+    id: "mullins-softening",
+    name: "Mullins softening of the bladder",
+    summary: "Rubber is softer where it has been stretched further before, and settles over its first cycles. The first \
+              inflation to a new contraction meets the full resistance of the bladder, and every later cycle below it \
+              meets less.",
+    equation: "F = F_base - d f (1 - exp(-(ε_m - ε) / ε_c)) - e f (1 - exp(-s / s_c)),  ε_m = largest contraction so far, \
+               s = ∫ |dε|",
+    symbols: &[
+        Symbol {
+            symbol: "d",
+            unit: "1",
+            meaning: "softening far below the largest contraction, in units of f; 0.02 to 0.1 for latex, 0.1 to 0.3 for \
+                      filled rubber",
+        },
+        Symbol {
+            symbol: "ε_c",
+            unit: "1",
+            meaning: "contraction below the largest at which 63 % are there; 0.01 to 0.1",
+        },
+        Symbol {
+            symbol: "f",
+            unit: "N",
+            meaning: "force of a bladder of latex, C₁₀ + C₀₁ = 0.22 MPa, whatever the fitted bladder is",
+        },
+        Symbol { symbol: "ε_m", unit: "1", meaning: "largest contraction so far" },
+        Symbol { symbol: "e", unit: "1", meaning: "softening over the first cycles, in units of f; 0.02 to 0.3" },
+        Symbol {
+            symbol: "s_c",
+            unit: "1",
+            meaning: "travel of the contraction ratio in which 63 % of that are there: a few cycles, 0.2 to 3",
+        },
+        Symbol { symbol: "s", unit: "1", meaning: "that travel so far, counted outside a play of 0.001" },
+    ],
+    validity: "Rubber that is fresh or rested for a day when the first recording begins, and softened by one recording for \
+               the next, or fresh in every one: whichever the recordings show. No recovery within hours.",
+    source: "Mullins (1948); Ogden and Roxburgh (1999), Proc. Royal Society A 455, simplified to one exponential over the \
+             contraction; Diani, Fayolle and Gilormini (2009), European Polymer Journal 45, for the first cycles",
+    signature: "The first cycle to each new contraction differs from the second at the same pressure and length, the \
+                later ones agree; the difference has the shape of the bladder's force and ignores the pressure.",
+    confused_with: &[
+        Confusion {
+            id: "viscoelastic-relaxation",
+            because: "the first cycle of rested rubber differs from the later ones as well",
+            test: "rest for ten minutes and repeat: relaxation comes back, softening does not",
+        },
+        Confusion {
+            id: "thermal-softening",
+            because: "both soften the bladder while the muscle works",
+            test: "rest for half an hour and repeat: warm rubber has cooled down, softened rubber has not healed",
+        },
+        Confusion {
+            id: "rubber-hysteresis",
+            because: "in a single cycle both take another path back",
+            test: "a second cycle to the same contraction: hysteresis opens the same loop again, softening does not",
+        },
+    ],
+    test: "a staircase of largest contractions of 5, 10, 15 and 20 %, three cycles each; the staircase again; rest; again",
+    protocol: "run-in",
+    coordinate: Coordinate::Cycle,
+    typical: Typical { shapes: &[&[0.03, 0.5]], amplitudes: &[0.06, 0.06] },
+    regions: &[],
+    drivers: &["contraction"],
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
+    use crate::geometry::tests::nominal;
+
+    #[test]
+    fn the_virgin_curve_is_untouched_and_the_way_back_softer() {
+        let mut memory = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        let mut at =
+            |contraction_ratio| pull(&mut *memory, &Moment { step_s: 0.1, contraction_ratio, ..still() }, &base())[0];
+        assert!(at(0.05).abs() < 1e-12 && at(0.1).abs() < 1e-12);
+        // The bladder resists contraction; a softer one leaves more force.
+        let back_n = at(0.07);
+        assert!((back_n + base().latex_n() * (1.0 - (-1.0_f64).exp())).abs() < 1e-9);
+        assert!(back_n > 0.0 && at(-10.0) <= -base().latex_n());
+        // Up again along the softened curve, and out onto the virgin one.
+        assert!((at(0.07) - back_n).abs() < 1e-12 && at(0.12).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_first_cycles_settle_it_and_noise_at_rest_does_not() {
+        let mut memory = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        let mut at = |contraction_ratio, step_s| {
+            pull(&mut *memory, &Moment { step_s, contraction_ratio, ..still() }, &base())[1]
+        };
+        assert!(at(0.1, 0.0).abs() < 1e-12);
+        for index in 0..1000 {
+            assert!(at(0.1 + 4e-4 * f64::from(index % 2), 0.01).abs() < 1e-12);
+        }
+        // Five cycles of 0.1 there and back are twice the settling travel, but for the play.
+        let last_n = (0..10).map(|index| at(0.1 + 0.1 * f64::from((index + 1) % 2), 0.5)).last().expect("ten turns");
+        assert!((last_n / base().latex_n() - (-2.0_f64).exp_m1()).abs() < 5e-3, "{last_n}");
+        // A gap keeps what was travelled and counts nothing.
+        assert!((at(0.15, 0.0) - last_n).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_memory_goes_on_from_what_an_earlier_one_has_kept() {
+        let mut first = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        let at = |contraction_ratio, step_s| Moment { step_s, contraction_ratio, ..still() };
+        pull(&mut *first, &at(0.0, 0.0), &base());
+        let most_n = pull(&mut *first, &at(0.12, 1.0), &base());
+        let mut second = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        second.go_on(&first.past());
+        let there_n = pull(&mut *second, &at(0.12, 0.0), &base());
+        assert!((there_n[0] - most_n[0]).abs() < 1e-12 && (there_n[1] - most_n[1]).abs() < 1e-12);
+        let below_n = |memory: &mut dyn Memory| pull(memory, &at(0.05, 0.0), &base())[0];
+        let mut fresh = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        assert!(below_n(&mut *second) > 10.0 && below_n(&mut *fresh).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_gap_does_not_heal_it_and_a_new_recording_does() {
+        let mut memory = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        let low = Moment { contraction_ratio: 0.02, ..still() };
+        pull(&mut *memory, &still(), &base());
+        assert!(pull(&mut *memory, &low, &base())[0] > 10.0);
+        let mut fresh = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
+        assert!(pull(&mut *fresh, &low, &base())[0].abs() < 1e-12);
+    }
+}

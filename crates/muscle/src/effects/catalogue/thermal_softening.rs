@@ -1,0 +1,176 @@
+//! Thermal softening: friction warms the bladder, and warm rubber is softer.
+//!
+//! ```text
+//! F = F_base - d f T - e f θ,   τ dT/dt = P / P_ref - T,   P = p π D L |v|,   f = V_r dW/dL of latex
+//! ```
+
+use crate::coordinate::Coordinate;
+use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::geometry::Muscle;
+
+/// `P_ref`, in W per unit of `f'`: 1 W of friction where `f'` is 1e-3.
+const REFERENCE_W: f64 = 1e3;
+
+/// Softening by lasting work at `P_ref`, at most: friction of `f'` = 0.03 makes 30 W of it, a thin muscle in still air warms by
+/// 50 K per watt, rubber loses 0.8 % per kelvin, and a bladder may be three times as stiff as latex.
+const MOST: f64 = 40.0;
+
+/// Softening per kelvin of a logged temperature, at most: 0.8 % of a bladder three times as stiff as latex.
+const MOST_PER_K: f64 = 0.025;
+
+/// The effect.
+#[derive(Debug)]
+pub(super) struct ThermalSoftening;
+
+impl Effect for ThermalSoftening {
+    fn page(&self) -> &'static Page {
+        &PAGE
+    }
+
+    fn role(&self) -> Role {
+        Role::Pulls
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Muscle
+    }
+
+    fn shape(&self) -> &'static [Shape] {
+        &[Shape { name: "time_constant_s", symbol: "τ", unit: "s", range: (20.0, 3e3), grid: &[60.0, 200.0, 600.0] }]
+    }
+
+    fn amplitudes(&self) -> &'static [Amplitude] {
+        &[
+            Amplitude { name: "softening_per_kilowatt", symbol: "d", unit: "1", range: (-MOST, MOST) },
+            Amplitude { name: "softening_per_kelvin", symbol: "e", unit: "1/K", range: (-MOST_PER_K, MOST_PER_K) },
+        ]
+    }
+
+    fn outlasts(&self) -> bool {
+        true
+    }
+
+    fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
+        Box::new(State { time_constant_s: shape[0], warmth: 0.0, power: 0.0, last_s: None })
+    }
+}
+
+struct State {
+    time_constant_s: f64,
+    /// `T`: temperature above the surroundings, in units of what `P_ref` would end at.
+    warmth: f64,
+    /// `P / P_ref` a moment ago.
+    power: f64,
+    last_s: Option<f64>,
+}
+
+impl Memory for State {
+    fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
+        let power = base.normal_n.max(0.0) * now.speed_m_per_s.abs() / REFERENCE_W;
+        if let Some(last_s) = self.last_s {
+            // Nothing is known of the power in a gap: the muscle is taken to have cooled.
+            let heating = if now.step_s > 0.0 { 0.5 * (power + self.power) } else { 0.0 };
+            let share = (-(now.time_s - last_s).max(0.0) / self.time_constant_s).exp_m1();
+            self.warmth += (self.warmth - heating) * share;
+        }
+        self.power = power;
+        self.last_s = Some(now.time_s);
+        columns[0] = -base.latex_n() * self.warmth;
+        columns[1] = -base.latex_n() * now.warmth_k;
+    }
+}
+
+static PAGE: Page = Page {
+    id: "thermal-softening",
+    name: "thermal softening of the bladder",
+    summary: "Friction and hysteresis warm a muscle that works, over minutes, and its bladder resists less. Rest cools \
+              it down again. Where a temperature was logged, the bladder follows that as well.",
+    equation: "F = F_base - d f T - e f θ,  τ dT/dt = P / P_ref - T,  P = p π D L |v|,  P_ref = 1 kW",
+    symbols: &[
+        Symbol {
+            symbol: "d",
+            unit: "1",
+            meaning: "softening, in units of f, that lasting work at P_ref (1 W of heat where f' is 1e-3) ends at; 0.02 to \
+                      0.2 for each 1e-3 of f'",
+        },
+        Symbol { symbol: "τ", unit: "s", meaning: "time constant of warming; 200 to 900 s, less for thin muscles" },
+        Symbol {
+            symbol: "f",
+            unit: "N",
+            meaning: "force of a bladder of latex, C₁₀ + C₀₁ = 0.22 MPa, whatever the fitted bladder is",
+        },
+        Symbol { symbol: "P", unit: "W", meaning: "power of the friction per unit of f'" },
+        Symbol {
+            symbol: "T",
+            unit: "1",
+            meaning: "temperature above that at the start, in units of what P_ref ends at",
+        },
+        Symbol {
+            symbol: "e",
+            unit: "1/K",
+            meaning: "softening per kelvin of the logged temperature, in units of f; 0.002 to 0.008, below zero for rubber \
+                      that stiffens; zero where none was logged",
+        },
+        Symbol { symbol: "θ", unit: "K", meaning: "logged temperature above 20 °C" },
+    ],
+    validity: "A recording that begins cold, in surroundings of constant temperature or with a logged one; some kelvin, where the rubber \
+               softens in proportion. Unfilled rubber may stiffen a little instead, which this leaves out.",
+    source: "Doumit and Pardoel (2017) for the heat of working muscles; first-order balance of heat",
+    signature: "Over minutes of cycling the force drifts upwards in proportion to the bladder's force, at every pressure \
+                alike, faster under faster motion, and comes back in rest.",
+    confused_with: &[
+        Confusion {
+            id: "fatigue-wear",
+            because: "both drift while the muscle cycles",
+            test: "rest for half an hour and probe: warmth is gone, wear is still there; at two pressures: wear follows \
+                   the pressure, warmth does not",
+        },
+        Confusion {
+            id: "force-drift",
+            because: "a load cell drifts over the same minutes",
+            test: "a vented and slack muscle before and after: there only the load cell differs; or log the temperature",
+        },
+        Confusion {
+            id: "mullins-softening",
+            because: "both soften the bladder while the muscle works",
+            test: "rest for half an hour and repeat: warm rubber has cooled down, softened rubber has not healed",
+        },
+    ],
+    test: "twenty minutes of cycling, then half an hour of rest with a probing cycle every five minutes, temperature \
+           logged",
+    protocol: "endurance",
+    coordinate: Coordinate::Time,
+    typical: Typical { shapes: &[&[400.0]], amplitudes: &[0.1, 0.0] },
+    regions: &[],
+    drivers: &["time", "cycle"],
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::moment::tests::{base, pull, still};
+    use crate::geometry::tests::nominal;
+
+    /// One kilowatt of `p π D L |v|`.
+    fn working(time_s: f64) -> Moment {
+        Moment { time_s, step_s: 1.0, speed_m_per_s: -REFERENCE_W / base().normal_n, ..still() }
+    }
+
+    #[test]
+    fn lasting_work_ends_at_one_and_rest_cools() {
+        let mut memory = ThermalSoftening.start(&nominal(), &[60.0]);
+        assert_eq!(pull(&mut *memory, &Moment { step_s: 0.0, ..working(0.0) }, &base())[0], 0.0);
+        let mut column_n = 0.0;
+        for second in 1..=60 {
+            column_n = pull(&mut *memory, &working(f64::from(second)), &base())[0];
+        }
+        let expected_n = -base().latex_n() * (1.0 - (-1.0_f64).exp());
+        assert!((column_n - expected_n).abs() < 1e-9, "{column_n} {expected_n}");
+        // A gap of one time constant.
+        let after = Moment { time_s: 120.0, ..still() };
+        let cooled_n = pull(&mut *memory, &after, &base())[0];
+        assert!((cooled_n - column_n * (-1.0_f64).exp()).abs() < 1e-9);
+        assert!(cooled_n > 0.0, "a softer bladder leaves more force");
+    }
+}

@@ -1,0 +1,210 @@
+//! The parts that the quality of a recording is made of, so that they can be found where its rows are and put together elsewhere.
+
+use std::io;
+
+#[cfg(feature = "schemas")]
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::channel::{ChannelQuality, SAMPLE_ROWS, colored_noise_std, noise_std};
+use super::recording::{COLUMNS, Column, RecordingQuality};
+use super::stuck::StuckRuns;
+use crate::{CHUNK_ROWS, Chunk, Recording, Samples};
+
+/// How many rows there are, and between what they lie.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Extent {
+    /// Rows.
+    pub n_rows: usize,
+    /// First time stamp, in s.
+    pub first_s: f64,
+    /// Last time stamp, in s.
+    pub last_s: f64,
+    /// Lowest pressure, length and force, in Pa, m and N.
+    pub lowest: [f64; 3],
+    /// Highest of each.
+    pub highest: [f64; 3],
+    /// Largest product of pressure and length, in N/m; never below zero.
+    pub largest_pressure_length_n_per_m: f64,
+}
+
+impl Extent {
+    /// Of all rows of a recording; a force that was not recorded lies nowhere.
+    ///
+    /// # Errors
+    /// Where the samples cannot be read back.
+    pub fn of(recording: &Recording) -> io::Result<Self> {
+        let samples = &recording.samples;
+        let mut extent = Self {
+            n_rows: samples.n_rows(),
+            first_s: 0.0,
+            last_s: 0.0,
+            lowest: [f64::INFINITY; 3],
+            highest: [f64::NEG_INFINITY; 3],
+            largest_pressure_length_n_per_m: 0.0,
+        };
+        for chunk in samples.chunks() {
+            let chunk = chunk?;
+            for (index, column) in COLUMNS.iter().enumerate() {
+                for &value in column(&chunk) {
+                    extent.lowest[index] = extent.lowest[index].min(value);
+                    extent.highest[index] = extent.highest[index].max(value);
+                }
+            }
+            let largest = &mut extent.largest_pressure_length_n_per_m;
+            for (pressure_pa, length_m) in chunk.pressure_pa().iter().zip(chunk.length_m()) {
+                *largest = largest.max(pressure_pa * length_m);
+            }
+            if chunk.first_row() == 0 {
+                extent.first_s = chunk.time_s()[0];
+            }
+            extent.last_s = chunk.time_s().last().copied().unwrap_or(extent.last_s);
+        }
+        Ok(extent)
+    }
+
+    /// Of these rows and of the `next` ones.
+    #[must_use]
+    pub fn joined(&self, next: &Self) -> Self {
+        Self {
+            n_rows: self.n_rows + next.n_rows,
+            first_s: self.first_s,
+            last_s: next.last_s,
+            lowest: std::array::from_fn(|index| self.lowest[index].min(next.lowest[index])),
+            highest: std::array::from_fn(|index| self.highest[index].max(next.highest[index])),
+            largest_pressure_length_n_per_m: self
+                .largest_pressure_length_n_per_m
+                .max(next.largest_pressure_length_n_per_m),
+        }
+    }
+}
+
+/// Chunks that noise and quantization are estimated on.
+pub(super) struct Sample {
+    pub(super) chunks: Vec<Chunk>,
+    pub(super) first_s: f64,
+    pub(super) period_s: f64,
+}
+
+/// Indices of the chunks of a recording of `n_rows` that stand for all of them: spread over it, so that a long hold at its
+/// start does not.
+pub fn sampled_chunks(n_rows: usize) -> impl Iterator<Item = usize> {
+    let n_chunks = n_rows.div_ceil(CHUNK_ROWS);
+    let wanted = (SAMPLE_ROWS / CHUNK_ROWS).max(1);
+    (0..n_chunks).step_by(n_chunks.div_ceil(wanted).max(1))
+}
+
+impl Sample {
+    pub(super) fn of(recording: &Recording) -> io::Result<Self> {
+        let samples = &recording.samples;
+        let chunks: io::Result<Vec<Chunk>> =
+            sampled_chunks(samples.n_rows()).map(|index| samples.chunk(index)).collect();
+        Ok(Self::of_chunks(chunks?))
+    }
+
+    fn of_chunks(chunks: Vec<Chunk>) -> Self {
+        let mut steps_s: Vec<f64> =
+            chunks.iter().flat_map(|chunk| chunk.time_s().windows(2).map(|pair| pair[1] - pair[0])).collect();
+        let middle = steps_s.len() / 2;
+        let period_s = if steps_s.is_empty() { 0.0 } else { *steps_s.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        let first_s = chunks.first().and_then(|chunk| chunk.time_s().first().copied()).unwrap_or(0.0);
+        Self { chunks, first_s, period_s }
+    }
+
+    /// White noise of a column, and noise of any color, steps or not.
+    pub(super) fn flicker(&self, column: Column) -> [f64; 2] {
+        let (mut squares, mut colored_squares, mut rows) = (0.0, 0.0, 0.0);
+        for chunk in &self.chunks {
+            let noise = noise_std(column(chunk));
+            let colored = colored_noise_std(column(chunk), self.period_s).unwrap_or(noise);
+            squares += noise * noise * chunk.n_rows() as f64;
+            colored_squares += colored * colored * chunk.n_rows() as f64;
+            rows += chunk.n_rows() as f64;
+        }
+        [squares, colored_squares].map(|squares| (squares / f64::max(rows, 1.0)).sqrt())
+    }
+
+    /// Whether the channel `index`, which is `channel`, can be told to be stuck: only one that flickers between its steps can.
+    pub(super) fn tells_stuck(&self, index: usize, channel: &ChannelQuality) -> bool {
+        let flickers = |step: f64| self.flicker(COLUMNS[index])[0] > 0.5 * step;
+        channel.highest > channel.lowest && channel.quantization_step.is_none_or(flickers)
+    }
+}
+
+impl RecordingQuality {
+    /// Quality of a recording whose rows are elsewhere: its name and repairs are those of `recording`, its rows have that
+    /// `extent`, `sampled` are those of its [`sampled_chunks`] one after the other, and `stuck` its runs, channel by channel.
+    /// Rates are zero.
+    ///
+    /// # Errors
+    /// Where samples cannot be read back.
+    pub fn of_elsewhere(
+        recording: &Recording,
+        extent: &Extent,
+        sampled: &Samples,
+        stuck: &[StuckRuns; 3],
+    ) -> io::Result<Self> {
+        let chunks: io::Result<Vec<Chunk>> = sampled.chunks().collect();
+        let sample = Sample::of_chunks(chunks?);
+        let mut quality = Self::of_parts(recording, extent, &sample);
+        for (index, channel) in quality.channels.iter_mut().enumerate() {
+            if sample.tells_stuck(index, channel) {
+                (channel.clipped_low_share, channel.clipped_high_share) =
+                    stuck[index].shares(channel.lowest, channel.highest);
+            }
+        }
+        Ok(quality)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Repairs;
+
+    #[test]
+    fn parts_found_apart_make_the_quality_of_the_whole() {
+        let n = 5 * CHUNK_ROWS + 77;
+        let noise = |row: usize, salt: usize| ((row * 7919 + salt) % 1013) as f64 / 506.0 - 1.0;
+        let time_s: Vec<f64> = (0..n).map(|row| 0.002 * row as f64).collect();
+        let wave = |row: usize| (0.003 * row as f64).sin();
+        let pressure_pa: Vec<f64> = (0..n).map(|row| 2e5 + 1e5 * wave(row) + 300.0 * noise(row, 1)).collect();
+        let length_m: Vec<f64> = (0..n).map(|row| 0.25 + 0.01 * wave(row) + 1e-5 * noise(row, 2)).collect();
+        // A cell that ends at 250 N.
+        let force_n: Vec<f64> = (0..n).map(|row| (300.0 * wave(row) + noise(row, 3)).min(250.0)).collect();
+        let recording = |rows: std::ops::Range<usize>| Recording {
+            path: "r.csv".to_owned(),
+            sha256: String::new(),
+            samples: Samples::from_columns(
+                &time_s[rows.clone()],
+                &pressure_pa[rows.clone()],
+                &length_m[rows.clone()],
+                &force_n[rows.clone()],
+            ),
+            segments: std::iter::once(0..rows.len()).collect(),
+            repairs: Repairs::default(),
+            ignored_columns: Vec::new(),
+        };
+        let whole = recording(0..n);
+        let mut expected = RecordingQuality::of(&whole).unwrap();
+        assert!(expected.channel("force").unwrap().clipped_high_share > 0.1);
+        let pieces = [0..30_001, 30_001..30_003, 30_003..n].map(recording);
+        let extents = pieces.each_ref().map(|piece| Extent::of(piece).unwrap());
+        let extent = extents[0].joined(&extents[1]).joined(&extents[2]);
+        let mut stuck: [StuckRuns; 3] = Default::default();
+        for piece in &pieces {
+            let next = StuckRuns::of(piece, &extent).unwrap();
+            stuck.iter_mut().zip(&next).enumerate().for_each(|(index, (stuck, next))| {
+                stuck.join(next, extent.lowest[index], extent.highest[index]);
+            });
+        }
+        let rows: Vec<usize> =
+            sampled_chunks(n).flat_map(|index| index * CHUNK_ROWS..((index + 1) * CHUNK_ROWS).min(n)).collect();
+        let some = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
+        let sampled = Samples::from_columns(&some(&time_s), &some(&pressure_pa), &some(&length_m), &some(&force_n));
+        (expected.length_rate_m_per_s, expected.pressure_rate_pa_per_s) = (0.0, 0.0);
+        assert_eq!(RecordingQuality::of_elsewhere(&whole, &extent, &sampled, &stuck).unwrap(), expected);
+    }
+}
