@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::Recording;
 use super::clock::{ClockFilter, Row};
-use super::error::{Place, ReadErrorKind};
+use super::error::{Place, ReadErrorKind, Refusal, whole};
 use super::header::Source;
-use super::read::{ReadOptions, Refusal, whole};
+use super::options::ReadOptions;
 use super::repair::Repairs;
 use super::row_fault::RowFault;
 use super::rows::{Channels, Line, RowParser};

@@ -12,8 +12,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::digest::sha256_hex;
-use super::options::{Calibration, Columns, FixedChannel, OptionSyntaxError, Target};
-use super::read::ReadOptions;
+use super::options::{Calibration, Columns, FixedChannel, OptionSyntaxError, ReadOptions, Target};
 use super::samples::MAX_COLUMNS;
 use super::units::Quantity;
 use super::wording::shown_name;

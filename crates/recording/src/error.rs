@@ -8,8 +8,8 @@ use super::repair::SkippedRow;
 use super::row_fault::RowFault;
 use super::units::Quantity;
 use super::wording::{
-    counted, counted_rows, listed, lvm_as_csv, missing_remedy, nearest_remedy, shell_quoted, shown_path, shown_place,
-    skipped_clause, too_few_remedy, twice_remedy,
+    counted, counted_rows, listed, lvm_as_csv, missing_remedy, nearest_remedy, shell_quoted, shown_path,
+    too_few_remedy, twice_remedy,
 };
 
 /// Displays as `path:line:column: reason`, which editors turn into a link; trouble with the file as a whole
@@ -23,6 +23,14 @@ pub struct ReadError {
     pub place: Option<Place>,
     /// The fault there.
     pub kind: Box<ReadErrorKind>,
+}
+
+/// A reason and, unless it concerns the whole file, its place.
+pub(super) type Refusal = (Option<Place>, ReadErrorKind);
+
+/// Concerns the whole file.
+pub(super) fn whole(kind: ReadErrorKind) -> Refusal {
+    (None, kind)
 }
 
 /// A place in a file.
@@ -333,5 +341,18 @@ pub enum ReadErrorKind {
 impl fmt::Display for Place {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}:{}", self.line, self.column)
+    }
+}
+
+fn shown_place(place: Option<Place>) -> String {
+    place.map_or_else(String::new, |place| format!(":{}:{}", place.line, place.column))
+}
+
+fn skipped_clause(skipped: u64, first: Option<&SkippedRow>) -> String {
+    match first {
+        Some(first) => {
+            format!(" that can be used ({skipped} skipped, the first at line {}: {})", first.line, first.reason)
+        }
+        None => String::new(),
     }
 }

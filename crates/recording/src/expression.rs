@@ -1,6 +1,50 @@
 //! Right side of a calibration: sums of products of numbers and one column, as in `125 * ai0 - 12.5`.
 
-use super::options::ExpressionFault;
+/// Reason why an expression is not linear in one column.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ExpressionFault {
+    /// A number, a column or an operator missing.
+    #[error("a number or a column is missing")]
+    Incomplete,
+    /// Two operands side by side.
+    #[error("an operator is missing")]
+    OperatorMissing,
+    /// Quotes that are not closed.
+    #[error("a quote is not closed")]
+    OpenQuote,
+    /// Digits that make no number.
+    #[error("\"{word}\" is not a number")]
+    BadNumber {
+        /// The digits.
+        word: String,
+    },
+    /// No column.
+    #[error("no column is named")]
+    NoColumn,
+    /// More than one column.
+    #[error("two columns are named, \"{first}\" and \"{second}\",")]
+    TwoColumns {
+        /// The first.
+        first: String,
+        /// The second.
+        second: String,
+    },
+    /// A column times itself, or below a fraction bar.
+    #[error("the column multiplies itself or stands below a fraction bar")]
+    NotLinear,
+    /// Nothing left of the column.
+    #[error("the column has no weight")]
+    NoWeight,
+    /// Numbers too large, or divided by zero.
+    #[error("a number is not finite")]
+    NotFinite,
+    /// Parentheses and the like.
+    #[error("'{character}' cannot be used")]
+    Unexpected {
+        /// The character.
+        character: char,
+    },
+}
 
 /// `gain * column + offset`.
 #[derive(Debug, PartialEq)]

@@ -31,6 +31,14 @@ pub(crate) fn is_comment(line: &[u8]) -> bool {
     line.trim_ascii_start().first() == Some(&b'#')
 }
 
+/// The text of a header: UTF-8, or what loggers on Windows write, whose letters are those of Latin-1.
+pub(crate) fn decoded(field: &[u8]) -> String {
+    match std::str::from_utf8(field) {
+        Ok(text) => text.to_owned(),
+        Err(_) => field.iter().map(|&byte| char::from(byte)).collect(),
+    }
+}
+
 /// Splits lines into fields.
 ///
 /// # Design

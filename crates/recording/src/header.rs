@@ -1,8 +1,8 @@
 //! From names to channels: which field of a row feeds which quantity, and what the options change about it.
 
 use super::error::ReadErrorKind;
+use super::options::ReadOptions;
 use super::options::{FixedChannel, Target};
-use super::read::ReadOptions;
 use super::samples::MAX_COLUMNS;
 use super::units::{ISO, Name, Quantity, Unit};
 use super::wording::{shell_quoted, shown_name};

@@ -3,7 +3,8 @@
 //! Source: National Instruments, "Specification for the LabVIEW Measurement File (.lvm)", 2024.
 
 use super::error::ReadErrorKind;
-use super::fields::strip_line_end;
+use super::fields::{decoded, strip_line_end};
+use super::units::with_unit;
 
 /// First bytes of a file.
 const MAGIC: &[u8] = b"LabVIEW Measurement";
@@ -56,7 +57,7 @@ fn read(start: &[u8]) -> Result<LvmHeader, ReadErrorKind> {
                 return Err(ReadErrorKind::LvmTime { found: String::from_utf8_lossy(value).into_owned() });
             }
             b"Y_Unit_Label" => {
-                units = std::iter::once(value).chain(words).map(super::opening::decoded).collect();
+                units = std::iter::once(value).chain(words).map(decoded).collect();
             }
             _ => {}
         }
@@ -74,7 +75,7 @@ pub(super) fn names(mut names: Vec<Option<String>>, header: &LvmHeader) -> Vec<O
         if index == 0 && text == TIME {
             *text = "time_s".to_owned();
         } else if let Some(unit) = index.checked_sub(1).and_then(|channel| header.units.get(channel)) {
-            *text = super::opening::with_unit(text, unit);
+            *text = with_unit(text, unit);
         }
     }
     names

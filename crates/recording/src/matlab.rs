@@ -6,10 +6,10 @@ use pam_matlab::{Column, Format, Label, MatError, MatFile, Signals};
 
 use super::Recording;
 use super::body::Body;
-use super::error::ReadErrorKind;
+use super::error::{ReadErrorKind, Refusal, whole};
 use super::header::{self, Plan};
 use super::lines::LineReader;
-use super::read::{ReadOptions, Refusal, whole};
+use super::options::ReadOptions;
 use super::rows::RowParser;
 use super::samples::MAX_COLUMNS;
 use super::sniff;

@@ -1,13 +1,13 @@
 //! The first line that is neither blank nor a comment: a header, or a row whose columns are named elsewhere.
 
 use super::date::stamp_s;
-use super::error::{Place, ReadErrorKind};
-use super::fields::{Fields, Splitter, number};
+use super::error::{Place, ReadErrorKind, Refusal, whole};
+use super::fields::{Fields, Splitter, decoded, number};
 use super::header::{self, Plan};
 use super::lvm::{self, LvmHeader};
-use super::read::{ReadOptions, Refusal, whole};
+use super::options::ReadOptions;
 use super::sniff::{Hints, Layout};
-use super::units::{ISO, Name, Quantity, bare_symbol};
+use super::units::{ISO, Name, Quantity, with_unit};
 
 /// Kind of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,24 +66,6 @@ pub(super) struct Seen {
     pub(super) layout: Layout,
     pub(super) hints: Hints,
     pub(super) lvm: Option<LvmHeader>,
-}
-
-/// The text of a header: UTF-8, or what loggers on Windows write, whose letters are those of Latin-1.
-pub(super) fn decoded(field: &[u8]) -> String {
-    match std::str::from_utf8(field) {
-        Ok(text) => text.to_owned(),
-        Err(_) => field.iter().map(|&byte| char::from(byte)).collect(),
-    }
-}
-
-/// A quantity without a unit together with the unit that stands elsewhere; any other name as it is.
-pub(super) fn with_unit(name: &str, unit: &str) -> String {
-    let unit = bare_symbol(unit);
-    if matches!(Name::read(name), Name::UnitMissing(_)) && !unit.is_empty() && unit != "-" {
-        format!("{} [{unit}]", name.trim())
-    } else {
-        name.to_owned()
-    }
 }
 
 /// Marks a column of time that holds dates and has no unit, where no other gives time.

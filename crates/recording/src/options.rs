@@ -1,9 +1,59 @@
-//! Options of a command line about the columns of a recording.
+//! How a recording is read, and what options of a command line say of its columns.
 
 use std::str::FromStr;
 
-use super::expression;
+use super::expression::{self, ExpressionFault};
+use super::samples::{MAX_COLUMNS, MEMORY_ROWS};
 use super::units::{Name, Quantity, Unit};
+
+/// How to read a recording.
+#[derive(Debug, Clone)]
+pub struct ReadOptions {
+    /// Names of the columns of a file without a header.
+    pub columns: Option<Columns>,
+    /// Other names for columns.
+    pub map: Vec<ColumnMap>,
+    /// Channels that were constant and not recorded.
+    pub fixed: Vec<FixedChannel>,
+    /// Channels computed from a transducer's reading.
+    pub calibrate: Vec<Calibration>,
+    /// Ends of the sensors' ranges, in SI and in the order of [`Quantity::ALL`](super::Quantity::ALL), as far as they are
+    /// known.
+    pub sensor_ranges: [Option<[f64; 2]>; MAX_COLUMNS],
+    /// Drop and count rows that cannot be used, instead of refusing the file.
+    pub skip_bad_rows: bool,
+    /// Refuse a recording without force, or whose force never varies.
+    pub force_required: bool,
+    /// Fewest rows that are enough; two at least.
+    pub min_rows: usize,
+    /// Rows that stay in memory; the others go to a temporary file.
+    pub memory_rows: usize,
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self {
+            columns: None,
+            map: Vec::new(),
+            fixed: Vec::new(),
+            calibrate: Vec::new(),
+            sensor_ranges: [None; MAX_COLUMNS],
+            skip_bad_rows: false,
+            force_required: true,
+            min_rows: 2,
+            memory_rows: MEMORY_ROWS,
+        }
+    }
+}
+
+impl ReadOptions {
+    /// Whether an option supplies `quantity`.
+    pub(super) fn supply(&self, quantity: Quantity) -> bool {
+        self.map.iter().any(|map| map.target.quantity == quantity)
+            || self.calibrate.iter().any(|line| line.target.quantity == quantity)
+            || self.fixed.iter().any(|fixed| fixed.quantity == quantity)
+    }
+}
 
 /// Names of the columns of a file without a header, as in `force_N,pressure_kPa,time_s,-`; `-` skips one.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,52 +172,6 @@ pub enum OptionSyntaxError {
         text: String,
         /// Its fault.
         fault: ExpressionFault,
-    },
-}
-
-/// Reason why an expression is not linear in one column.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ExpressionFault {
-    /// A number, a column or an operator missing.
-    #[error("a number or a column is missing")]
-    Incomplete,
-    /// Two operands side by side.
-    #[error("an operator is missing")]
-    OperatorMissing,
-    /// Quotes that are not closed.
-    #[error("a quote is not closed")]
-    OpenQuote,
-    /// Digits that make no number.
-    #[error("\"{word}\" is not a number")]
-    BadNumber {
-        /// The digits.
-        word: String,
-    },
-    /// No column.
-    #[error("no column is named")]
-    NoColumn,
-    /// More than one column.
-    #[error("two columns are named, \"{first}\" and \"{second}\",")]
-    TwoColumns {
-        /// The first.
-        first: String,
-        /// The second.
-        second: String,
-    },
-    /// A column times itself, or below a fraction bar.
-    #[error("the column multiplies itself or stands below a fraction bar")]
-    NotLinear,
-    /// Nothing left of the column.
-    #[error("the column has no weight")]
-    NoWeight,
-    /// Numbers too large, or divided by zero.
-    #[error("a number is not finite")]
-    NotFinite,
-    /// Parentheses and the like.
-    #[error("'{character}' cannot be used")]
-    Unexpected {
-        /// The character.
-        character: char,
     },
 }
 

@@ -6,68 +6,17 @@ use rayon::prelude::*;
 
 use super::Recording;
 use super::body::Body;
-use super::error::{Place, ReadError, ReadErrorKind};
+use super::error::{Place, ReadError, ReadErrorKind, Refusal, whole};
 use super::fields::{is_blank, is_comment, strip_line_end};
 use super::lines::{LineReader, Lines, MAX_LINE_BYTES};
 use super::lvm;
 use super::matlab;
 use super::opening::{self, Comment, Opened, Seen};
-use super::options::{Calibration, ColumnMap, Columns, FixedChannel};
+use super::options::ReadOptions;
 use super::row_fault::RowFault;
 use super::rows::{Line, RowParser};
-use super::samples::{MAX_COLUMNS, MEMORY_ROWS};
 use super::sniff::{self, Layout};
 use super::source::ByteSource;
-use super::units::Quantity;
-
-/// How to read a recording.
-#[derive(Debug, Clone)]
-pub struct ReadOptions {
-    /// Names of the columns of a file without a header.
-    pub columns: Option<Columns>,
-    /// Other names for columns.
-    pub map: Vec<ColumnMap>,
-    /// Channels that were constant and not recorded.
-    pub fixed: Vec<FixedChannel>,
-    /// Channels computed from a transducer's reading.
-    pub calibrate: Vec<Calibration>,
-    /// Ends of the sensors' ranges, in SI and in the order of [`Quantity::ALL`](super::Quantity::ALL), as far as they are
-    /// known.
-    pub sensor_ranges: [Option<[f64; 2]>; MAX_COLUMNS],
-    /// Drop and count rows that cannot be used, instead of refusing the file.
-    pub skip_bad_rows: bool,
-    /// Refuse a recording without force, or whose force never varies.
-    pub force_required: bool,
-    /// Fewest rows that are enough; two at least.
-    pub min_rows: usize,
-    /// Rows that stay in memory; the others go to a temporary file.
-    pub memory_rows: usize,
-}
-
-impl Default for ReadOptions {
-    fn default() -> Self {
-        Self {
-            columns: None,
-            map: Vec::new(),
-            fixed: Vec::new(),
-            calibrate: Vec::new(),
-            sensor_ranges: [None; MAX_COLUMNS],
-            skip_bad_rows: false,
-            force_required: true,
-            min_rows: 2,
-            memory_rows: MEMORY_ROWS,
-        }
-    }
-}
-
-impl ReadOptions {
-    /// Whether an option supplies `quantity`.
-    pub(super) fn supply(&self, quantity: Quantity) -> bool {
-        self.map.iter().any(|map| map.target.quantity == quantity)
-            || self.calibrate.iter().any(|line| line.target.quantity == quantity)
-            || self.fixed.iter().any(|fixed| fixed.quantity == quantity)
-    }
-}
 
 /// Reads a recording; `-` is standard input. Compressed files (gzip) are recognised by their content.
 ///
@@ -92,13 +41,6 @@ pub fn read_recording_observed(
         place,
         kind: Box::new(kind),
     })
-}
-
-/// A reason and, unless it concerns the whole file, its place.
-pub(super) type Refusal = (Option<Place>, ReadErrorKind);
-
-pub(super) fn whole(kind: ReadErrorKind) -> Refusal {
-    (None, kind)
 }
 
 fn read(path: &Path, options: &ReadOptions, observe: &mut dyn FnMut(u64, u64)) -> Result<Recording, Refusal> {

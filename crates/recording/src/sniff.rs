@@ -2,8 +2,7 @@
 
 use super::date::stamp_s;
 use super::error::ReadErrorKind;
-use super::fields::{Fields, Splitter, is_blank, is_comment, number, strip_line_end};
-use super::opening::decoded;
+use super::fields::{Fields, Splitter, decoded, is_blank, is_comment, number, strip_line_end};
 use super::units::is_symbol;
 
 /// Bytes that decide whether a file is text.

@@ -248,5 +248,15 @@ pub(crate) fn bare_symbol(text: &str) -> &str {
     bracketed(text).filter(|(word, _)| word.is_empty()).map_or(text, |(_, symbol)| symbol)
 }
 
+/// A quantity without a unit together with the unit that stands elsewhere; any other name as it is.
+pub(crate) fn with_unit(name: &str, unit: &str) -> String {
+    let unit = bare_symbol(unit);
+    if matches!(Name::read(name), Name::UnitMissing(_)) && !unit.is_empty() && unit != "-" {
+        format!("{} [{unit}]", name.trim())
+    } else {
+        name.to_owned()
+    }
+}
+
 #[cfg(test)]
 mod tests;

@@ -2,16 +2,10 @@
 
 use std::path::Path;
 
-use super::error::Place;
-use super::repair::SkippedRow;
 use super::units::Quantity;
 
 pub(super) fn shown_path(path: &Path) -> String {
     if path.as_os_str() == "-" { "standard input".to_owned() } else { clipped(&path.to_string_lossy(), 1000) }
-}
-
-pub(super) fn shown_place(place: Option<Place>) -> String {
-    place.map_or_else(String::new, |place| format!(":{}:{}", place.line, place.column))
 }
 
 pub(super) fn counted(n: usize, noun: &str) -> String {
@@ -23,15 +17,6 @@ pub(super) fn counted_rows(found: usize) -> String {
         0 => "there are no rows".to_owned(),
         1 => "there is only one row".to_owned(),
         _ => format!("there are only {found} rows"),
-    }
-}
-
-pub(super) fn skipped_clause(skipped: u64, first: Option<&SkippedRow>) -> String {
-    match first {
-        Some(first) => {
-            format!(" that can be used ({skipped} skipped, the first at line {}: {})", first.line, first.reason)
-        }
-        None => String::new(),
     }
 }
 

@@ -7,9 +7,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::channel::{ChannelQuality, SAMPLE_ROWS, colored_noise_std, noise_std};
-use super::recording::{COLUMNS, Column, RecordingQuality};
-use super::stuck::StuckRuns;
-use crate::{CHUNK_ROWS, Chunk, Recording, Samples};
+use crate::{CHUNK_ROWS, Chunk, Recording};
+
+pub(super) type Column = fn(&Chunk) -> &[f64];
+
+/// The columns of which a quality speaks: pressure, length and force.
+pub(super) const COLUMNS: [Column; 3] = [Chunk::pressure_pa, Chunk::length_m, Chunk::force_n];
 
 /// How many rows there are, and between what they lie.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -104,7 +107,7 @@ impl Sample {
         Ok(Self::of_chunks(chunks?))
     }
 
-    fn of_chunks(chunks: Vec<Chunk>) -> Self {
+    pub(super) fn of_chunks(chunks: Vec<Chunk>) -> Self {
         let mut steps_s: Vec<f64> =
             chunks.iter().flat_map(|chunk| chunk.time_s().windows(2).map(|pair| pair[1] - pair[0])).collect();
         let middle = steps_s.len() / 2;
@@ -130,81 +133,5 @@ impl Sample {
     pub(super) fn tells_stuck(&self, index: usize, channel: &ChannelQuality) -> bool {
         let flickers = |step: f64| self.flicker(COLUMNS[index])[0] > 0.5 * step;
         channel.highest > channel.lowest && channel.quantization_step.is_none_or(flickers)
-    }
-}
-
-impl RecordingQuality {
-    /// Quality of a recording whose rows are elsewhere: its name and repairs are those of `recording`, its rows have that
-    /// `extent`, `sampled` are those of its [`sampled_chunks`] one after the other, and `stuck` its runs, channel by channel.
-    /// Rates are zero.
-    ///
-    /// # Errors
-    /// Where samples cannot be read back.
-    pub fn of_elsewhere(
-        recording: &Recording,
-        extent: &Extent,
-        sampled: &Samples,
-        stuck: &[StuckRuns; 3],
-    ) -> io::Result<Self> {
-        let chunks: io::Result<Vec<Chunk>> = sampled.chunks().collect();
-        let sample = Sample::of_chunks(chunks?);
-        let mut quality = Self::of_parts(recording, extent, &sample);
-        for (index, channel) in quality.channels.iter_mut().enumerate() {
-            if sample.tells_stuck(index, channel) {
-                (channel.clipped_low_share, channel.clipped_high_share) =
-                    stuck[index].shares(channel.lowest, channel.highest);
-            }
-        }
-        Ok(quality)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Repairs;
-
-    #[test]
-    fn parts_found_apart_make_the_quality_of_the_whole() {
-        let n = 5 * CHUNK_ROWS + 77;
-        let noise = |row: usize, salt: usize| ((row * 7919 + salt) % 1013) as f64 / 506.0 - 1.0;
-        let time_s: Vec<f64> = (0..n).map(|row| 0.002 * row as f64).collect();
-        let wave = |row: usize| (0.003 * row as f64).sin();
-        let pressure_pa: Vec<f64> = (0..n).map(|row| 2e5 + 1e5 * wave(row) + 300.0 * noise(row, 1)).collect();
-        let length_m: Vec<f64> = (0..n).map(|row| 0.25 + 0.01 * wave(row) + 1e-5 * noise(row, 2)).collect();
-        // A cell that ends at 250 N.
-        let force_n: Vec<f64> = (0..n).map(|row| (300.0 * wave(row) + noise(row, 3)).min(250.0)).collect();
-        let recording = |rows: std::ops::Range<usize>| Recording {
-            path: "r.csv".to_owned(),
-            sha256: String::new(),
-            samples: Samples::from_columns(
-                &time_s[rows.clone()],
-                &pressure_pa[rows.clone()],
-                &length_m[rows.clone()],
-                &force_n[rows.clone()],
-            ),
-            segments: std::iter::once(0..rows.len()).collect(),
-            repairs: Repairs::default(),
-            ignored_columns: Vec::new(),
-        };
-        let whole = recording(0..n);
-        let mut expected = RecordingQuality::of(&whole).unwrap();
-        assert!(expected.channel("force").unwrap().clipped_high_share > 0.1);
-        let pieces = [0..30_001, 30_001..30_003, 30_003..n].map(recording);
-        let extents = pieces.each_ref().map(|piece| Extent::of(piece).unwrap());
-        let extent = extents[0].joined(&extents[1]).joined(&extents[2]);
-        let mut stuck: [StuckRuns; 3] = Default::default();
-        for piece in &pieces {
-            let next = StuckRuns::of(piece, &extent).unwrap();
-            stuck.iter_mut().zip(&next).enumerate().for_each(|(index, (stuck, next))| {
-                stuck.join(next, extent.lowest[index], extent.highest[index]);
-            });
-        }
-        let rows: Vec<usize> =
-            sampled_chunks(n).flat_map(|index| index * CHUNK_ROWS..((index + 1) * CHUNK_ROWS).min(n)).collect();
-        let some = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-        let sampled = Samples::from_columns(&some(&time_s), &some(&pressure_pa), &some(&length_m), &some(&force_n));
-        (expected.length_rate_m_per_s, expected.pressure_rate_pa_per_s) = (0.0, 0.0);
-        assert_eq!(RecordingQuality::of_elsewhere(&whole, &extent, &sampled, &stuck).unwrap(), expected);
     }
 }

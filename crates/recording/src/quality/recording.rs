@@ -8,9 +8,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::channel::{ChannelQuality, quantization_step, rest_noise_std};
-use super::parts::{Extent, Sample};
+use super::parts::{COLUMNS, Column, Extent, Sample};
 use super::stuck::StuckRuns;
-use crate::{Chunk, Recording, Repairs};
+use crate::{Chunk, Recording, Repairs, Samples};
 
 /// What a recording looks like before anything is fitted to it; SI throughout.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -59,7 +59,7 @@ impl RecordingQuality {
     }
 
     /// What `extent` and `sample` of a recording say: all but stuck samples and rates, which are zero.
-    pub(super) fn of_parts(recording: &Recording, extent: &Extent, sample: &Sample) -> Self {
+    fn of_parts(recording: &Recording, extent: &Extent, sample: &Sample) -> Self {
         let names = if recording.samples.has_force() { &NAMES[..] } else { &NAMES[..2] };
         let channels = names.par_iter().enumerate().map(|(index, _)| channel(index, extent, sample)).collect();
         Self {
@@ -73,6 +73,30 @@ impl RecordingQuality {
             pressure_rate_pa_per_s: 0.0,
             largest_pressure_length_n_per_m: extent.largest_pressure_length_n_per_m,
         }
+    }
+
+    /// Quality of a recording whose rows are elsewhere: its name and repairs are those of `recording`, its rows have that
+    /// `extent`, `sampled` are those of its [`sampled_chunks`](super::parts::sampled_chunks) one after the other, and `stuck`
+    /// its runs, channel by channel. Rates are zero.
+    ///
+    /// # Errors
+    /// Where samples cannot be read back.
+    pub fn of_elsewhere(
+        recording: &Recording,
+        extent: &Extent,
+        sampled: &Samples,
+        stuck: &[StuckRuns; 3],
+    ) -> io::Result<Self> {
+        let chunks: io::Result<Vec<Chunk>> = sampled.chunks().collect();
+        let sample = Sample::of_chunks(chunks?);
+        let mut quality = Self::of_parts(recording, extent, &sample);
+        for (index, channel) in quality.channels.iter_mut().enumerate() {
+            if sample.tells_stuck(index, channel) {
+                (channel.clipped_low_share, channel.clipped_high_share) =
+                    stuck[index].shares(channel.lowest, channel.highest);
+            }
+        }
+        Ok(quality)
     }
 
     /// Fastest changes within the chunks of `recording`, with the noise and the clock that are here.
@@ -93,10 +117,7 @@ impl RecordingQuality {
     }
 }
 
-pub(super) type Column = fn(&Chunk) -> &[f64];
-
-/// The columns in the order of [`NAMES`].
-pub(super) const COLUMNS: [Column; 3] = [Chunk::pressure_pa, Chunk::length_m, Chunk::force_n];
+/// The names of [`COLUMNS`], and their units.
 const NAMES: [(&str, &str); 3] = [("pressure", "Pa"), ("length", "m"), ("force", "N")];
 
 /// Fastest changes over 50 ms.
@@ -171,4 +192,55 @@ fn fastest(recording: &Recording, column: Column, noise: f64, period_s: f64) -> 
         }
     }
     Ok(fastest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CHUNK_ROWS;
+    use crate::quality::parts::sampled_chunks;
+
+    #[test]
+    fn parts_found_apart_make_the_quality_of_the_whole() {
+        let n = 5 * CHUNK_ROWS + 77;
+        let noise = |row: usize, salt: usize| ((row * 7919 + salt) % 1013) as f64 / 506.0 - 1.0;
+        let time_s: Vec<f64> = (0..n).map(|row| 0.002 * row as f64).collect();
+        let wave = |row: usize| (0.003 * row as f64).sin();
+        let pressure_pa: Vec<f64> = (0..n).map(|row| 2e5 + 1e5 * wave(row) + 300.0 * noise(row, 1)).collect();
+        let length_m: Vec<f64> = (0..n).map(|row| 0.25 + 0.01 * wave(row) + 1e-5 * noise(row, 2)).collect();
+        // A cell that ends at 250 N.
+        let force_n: Vec<f64> = (0..n).map(|row| (300.0 * wave(row) + noise(row, 3)).min(250.0)).collect();
+        let recording = |rows: std::ops::Range<usize>| Recording {
+            path: "r.csv".to_owned(),
+            sha256: String::new(),
+            samples: Samples::from_columns(
+                &time_s[rows.clone()],
+                &pressure_pa[rows.clone()],
+                &length_m[rows.clone()],
+                &force_n[rows.clone()],
+            ),
+            segments: std::iter::once(0..rows.len()).collect(),
+            repairs: Repairs::default(),
+            ignored_columns: Vec::new(),
+        };
+        let whole = recording(0..n);
+        let mut expected = RecordingQuality::of(&whole).unwrap();
+        assert!(expected.channel("force").unwrap().clipped_high_share > 0.1);
+        let pieces = [0..30_001, 30_001..30_003, 30_003..n].map(recording);
+        let extents = pieces.each_ref().map(|piece| Extent::of(piece).unwrap());
+        let extent = extents[0].joined(&extents[1]).joined(&extents[2]);
+        let mut stuck: [StuckRuns; 3] = Default::default();
+        for piece in &pieces {
+            let next = StuckRuns::of(piece, &extent).unwrap();
+            stuck.iter_mut().zip(&next).enumerate().for_each(|(index, (stuck, next))| {
+                stuck.join(next, extent.lowest[index], extent.highest[index]);
+            });
+        }
+        let rows: Vec<usize> =
+            sampled_chunks(n).flat_map(|index| index * CHUNK_ROWS..((index + 1) * CHUNK_ROWS).min(n)).collect();
+        let some = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
+        let sampled = Samples::from_columns(&some(&time_s), &some(&pressure_pa), &some(&length_m), &some(&force_n));
+        (expected.length_rate_m_per_s, expected.pressure_rate_pa_per_s) = (0.0, 0.0);
+        assert_eq!(RecordingQuality::of_elsewhere(&whole, &extent, &sampled, &stuck).unwrap(), expected);
+    }
 }

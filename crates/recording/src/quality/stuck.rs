@@ -6,8 +6,7 @@ use std::io;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::parts::Extent;
-use super::recording::COLUMNS;
+use super::parts::{COLUMNS, Extent};
 use crate::Recording;
 
 /// Length of a run of equal values that counts as stuck.
