@@ -25,15 +25,11 @@
 //! Source: Chou and Hannaford (1996), "Measurement and modeling of McKibben pneumatic artificial
 //! muscles", IEEE Trans. Robotics and Automation 12(1).
 
-mod file;
-
 use std::f64::consts::PI;
 
 #[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-pub use file::{MuscleError, MuscleFile};
 
 /// Dimensions of a muscle, in SI; see the [module](self) for symbols.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ use std::io;
 use pam_recording::Recording;
 
 use crate::direction::{Direction, Thresholds};
-use crate::effects::Moment;
+use crate::effects::{Moment, Seen};
 use crate::force::ForceModel;
 use crate::knees::Knees;
 use crate::smoothing::{Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Parabola, Sliding, Window};
@@ -31,6 +31,23 @@ pub struct Instant {
     pub knee: bool,
     /// Whether the direction is certain, all through the window where channels are smooth.
     pub settled: bool,
+}
+
+/// Here and not beside [`Seen`], so that effects need not know how a recording is walked over.
+impl Seen {
+    /// Ranges that `instants` cover.
+    pub fn of<'a>(instants: impl Iterator<Item = &'a Instant>) -> Self {
+        const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
+        let widened = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+        let start =
+            Self { contraction_ratio: NOTHING, pressure_pa: NOTHING, force_n: NOTHING, duration_s: f64::NEG_INFINITY };
+        instants.fold(start, |seen, instant| Self {
+            contraction_ratio: widened(seen.contraction_ratio, instant.moment.contraction_ratio),
+            pressure_pa: widened(seen.pressure_pa, instant.moment.pressure_pa),
+            force_n: widened(seen.force_n, instant.force_n),
+            duration_s: seen.duration_s.max(instant.moment.time_s),
+        })
+    }
 }
 
 /// Which values of the channels an instant carries.

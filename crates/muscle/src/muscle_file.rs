@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use pam_recording::spelling::{nearest, number, toml_fault, unreadable};
 use serde::Deserialize;
 
-use super::{Dimension, Muscle};
+use crate::geometry::{Dimension, Muscle};
 
 /// A muscle file: what was measured, and which of it a fit may adjust.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,8 +4,8 @@
 use std::ops::Range;
 
 use super::rest::{pushed, standstills};
+use super::thresholds::{Driver, Standstill, Thresholds};
 use super::turn::{NOISE, Turn};
-use super::{Driver, Standstill, Thresholds};
 use crate::smoothing::{Sliding, Window};
 
 /// Length of the moving average, in s; at least five samples and at most 101 are averaged.

@@ -33,7 +33,6 @@ pub use sentence::Sentence;
 use std::fmt;
 
 use crate::geometry::Muscle;
-use crate::motion::Instant;
 
 /// Where an effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -115,22 +114,6 @@ pub struct Seen {
     pub force_n: (f64, f64),
     /// Longest recording, in s.
     pub duration_s: f64,
-}
-
-impl Seen {
-    /// Ranges that `instants` cover.
-    pub fn of<'a>(instants: impl Iterator<Item = &'a Instant>) -> Self {
-        const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
-        let widened = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
-        let start =
-            Self { contraction_ratio: NOTHING, pressure_pa: NOTHING, force_n: NOTHING, duration_s: f64::NEG_INFINITY };
-        instants.fold(start, |seen, instant| Self {
-            contraction_ratio: widened(seen.contraction_ratio, instant.moment.contraction_ratio),
-            pressure_pa: widened(seen.pressure_pa, instant.moment.pressure_pa),
-            force_n: widened(seen.force_n, instant.force_n),
-            duration_s: seen.duration_s.max(instant.moment.time_s),
-        })
-    }
 }
 
 /// An effect of the catalogue.

@@ -35,7 +35,7 @@
 
 use std::f64::consts::PI;
 
-use super::Form;
+use super::form::Form;
 use crate::geometry::Muscle;
 
 /// Columns that stand for the braid term in a fit.

@@ -12,37 +12,18 @@
 pub mod bladder;
 pub mod braid;
 pub mod columns;
+mod form;
 pub mod gas;
 pub mod rubber_friction;
 pub mod strand_friction;
+
+pub use form::Form;
 
 #[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Kinematics, Muscle};
-
-/// How eq. 11 is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schemas", derive(JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum Form {
-    /// Rubber resists contraction, strand tension from equilibrium, friction by the motion of the braid.
-    Corrected,
-    /// As the paper prints it: rubber helps contraction, strand tension too large by `2 n`, friction by
-    /// the sign of the pressure's change.
-    AsPrinted,
-}
-
-impl Form {
-    /// Sign of the bladder term in the sum.
-    pub fn bladder_sign(self) -> f64 {
-        match self {
-            Self::Corrected => 1.0,
-            Self::AsPrinted => -1.0,
-        }
-    }
-}
 
 /// A parameter of eq. 11 that a fit may find.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

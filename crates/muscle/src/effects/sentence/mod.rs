@@ -13,8 +13,9 @@
 //! | `w`  | [`Sentence::seen`] | 1 where `m(d)` was seen, falling to 0 over a tenth of that range beyond it   |
 //!
 //! `f` is linear in its amplitudes, which a model carries as parameters; everything else is fixed in the sentence. Any
-//! language evaluates it from the formulas in these four files and the [`Moment`].
+//! language evaluates it from the formulas in these files and the [`Moment`].
 
+mod argument;
 mod curve;
 mod custom;
 mod driver;
@@ -23,9 +24,10 @@ mod recall;
 mod scale;
 mod text;
 
+pub use argument::Argument;
 pub use curve::{Curve, MOST_KNOTS};
 pub use custom::{CustomError, custom_effects};
-pub use driver::{Argument, Driver};
+pub use driver::Driver;
 pub use own::{EMPIRICAL, own};
 pub use recall::Recall;
 pub use scale::Scale;

@@ -18,7 +18,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Driver;
+use super::driver::Driver;
 use crate::effects::{Base, Moment};
 
 /// What a sentence remembers of its driver; see the [module](self) for the equations.
