@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::diagnosis::Evidence;
+use super::evidence::Evidence;
 use super::origin::{Input, Tool};
 
 /// Schema name and version.

@@ -11,8 +11,9 @@ pub use super::empirical::{
     Empirical, EmpiricalCurve, EmpiricalGain, EmpiricalTerm, NearestEffect, Stability, StabilityRival,
 };
 use super::error::ArtifactError;
-use super::model::ParameterEntry;
+pub use super::evidence::Evidence;
 use super::origin::{Input, Tool};
+use super::parameter_entry::ParameterEntry;
 
 /// Schema name and version.
 pub const SCHEMA: &str = "pam-diagnosis/1";
@@ -195,25 +196,6 @@ pub struct NamedEffect {
     pub alternatives: Vec<String>,
     /// What would tell them apart, or confirm it where nothing else is in question.
     pub separating_test: String,
-}
-
-/// Evidence for an effect: base and effects fitted jointly to all blocks but one, judged on that one, in turn.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schemas", derive(JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Evidence {
-    /// Log predictive ratio: sum over blocks left out of the fit of `ln(mean square without / mean square with)`.
-    pub log_ratio: f64,
-    /// Held-out RMSE without it, everything else refitted, in N.
-    pub rmse_without_n: f64,
-    /// Held-out RMSE with it, in N.
-    pub rmse_with_n: f64,
-    /// Held-out blocks that it improves.
-    pub blocks_improved: usize,
-    /// Held-out blocks.
-    pub n_blocks: usize,
-    /// Probability of such an improvement by chance, corrected for multiple comparisons.
-    pub p_value: f64,
 }
 
 /// Residuals before and after, root mean square over samples whose direction is settled.

@@ -7,7 +7,7 @@ use pam_recording::spelling::number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::model::ParameterEntry;
+use super::parameter_entry::ParameterEntry;
 
 /// An effect beyond eq. 11.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -5,8 +5,8 @@ use pam_muscle::effects::Sentence;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::diagnosis::Evidence;
-use super::model::ParameterEntry;
+use super::evidence::Evidence;
+use super::parameter_entry::ParameterEntry;
 
 /// What models the part of a mismatch that has no name, and what that gains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::diagnosis::{DiagnoseConfig, NamedEffect, Verdict};
-use super::model::ParameterEntry;
 use super::origin::{Input, Tool};
+use super::parameter_entry::ParameterEntry;
 
 /// Schema name and version.
 pub const SCHEMA: &str = "pam-group/1";
