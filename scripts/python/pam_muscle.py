@@ -180,6 +180,10 @@ class Slip:
     def __init__(self, distance):
         self.distance, self.states, self.last = distance, None, None
 
+    def turn(self, by):
+        """Turns every element over by `by`, from -1 to 1 by 2."""
+        self.states = [min(max(z + by, -1.0), 1.0) for z in self.states]
+
     def follow(self, position, settled):
         """Share of the full force, in [-1, 1]; `settled` is that at the first moment."""
         if self.states is None:
@@ -385,9 +389,19 @@ class BraidLockup:
 class PreslidingHysteresis:
     def __init__(self, values, eq11):
         self.slip, self.slide_at_rest = Slip(values["slip_distance_m"]), values["slide_at_rest"]
+        # Models that do not say know the other alone.
+        self.turns_at_rest = values.get("turns_at_rest", 0.0)
+        self.rest_length_m = eq11.rest_length_m
+        self.moved = None  # where and which way, when anything last moved
 
     def slides(self, now):
-        slide_m = now.slide_m + (self.slide_at_rest - 1.0) * now.rest_slide_m
+        moved = (now.contraction_ratio, now.rest_slide_m, now.direction)
+        pressed = self.moved is not None and now.rest_slide_m != self.moved[1]
+        if pressed:
+            self.slip.turn(self.turns_at_rest * (now.direction - self.moved[2]))
+        if self.moved is None or pressed or now.contraction_ratio != self.moved[0]:
+            self.moved = moved
+        slide_m = now.contraction_ratio * self.rest_length_m + self.slide_at_rest * now.rest_slide_m
         return self.slip.follow(slide_m, now.direction if now.came else 0.0)
 
 

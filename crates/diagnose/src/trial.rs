@@ -311,7 +311,7 @@ mod tests {
         assert!(is_degenerate(of("inertia"), &[12.0]));
         assert!(!is_degenerate(of("series-compliance"), &[1e-5, 1.0, 0.0]));
         assert!(is_degenerate(of("series-compliance"), &[1e-4, 1.0, 0.0]));
-        assert!(is_degenerate(of("presliding-hysteresis"), &[2e-4, 0.0]));
+        assert!(is_degenerate(of("presliding-hysteresis"), &[2e-4, 0.0, 1.0]));
     }
 
     #[test]

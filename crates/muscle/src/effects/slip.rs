@@ -34,6 +34,11 @@ impl Slip {
         Self { distance, states: [direction; 6], last: position }
     }
 
+    /// Turns every element over by `by`, wherever it is: something else than travel moves them.
+    fn turn(&mut self, by: f64) {
+        self.states.iter_mut().for_each(|state| *state = (*state + by).clamp(-1.0, 1.0));
+    }
+
     /// Moves to `position`; the share of the full force, in [-1, 1].
     pub fn move_to(&mut self, position: f64) -> f64 {
         let step = (position - self.last) / self.distance;
@@ -59,6 +64,15 @@ impl Follower {
     /// With the characteristic distance.
     pub(super) fn new(distance: f64) -> Self {
         Self { distance, slip: None }
+    }
+
+    /// Turns every element over by `by`, from -1 to 1 by 2, in the recording that it is in.
+    pub(super) fn turn(&mut self, now: &Moment, by: f64) {
+        if let Some((recording, slip)) = &mut self.slip
+            && *recording == now.recording
+        {
+            slip.turn(by);
+        }
     }
 
     /// The share of the full force, in [-1, 1], where `position` has been reached `now`. The muscle came

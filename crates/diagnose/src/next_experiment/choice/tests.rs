@@ -61,9 +61,9 @@ fn any_number_of_threads_gives_the_same_answer() {
 
 #[test]
 fn the_page_of_an_effect_names_the_protocol_that_confirms_it() {
-    let given = Given::of(&["isobaric-triangles", "minor-loops"], &[("presliding-hysteresis", &[1e-3, 1.0], &[])]);
+    let given = Given::of(&["isobaric-triangles", "minor-loops"], &[("presliding-hysteresis", &[1e-3, 1.0, 0.0], &[])]);
     let setting = given.setting();
-    let with = explanation(&given, "presliding-hysteresis", &[1e-3, 1.0]);
+    let with = explanation(&given, "presliding-hysteresis", &[1e-3, 1.0, 0.0]);
     let without = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
     let effect = with.state.guesses[0].effect;
     let explanations = [with, Explanation { id: "nothing", state: without }];

@@ -5,6 +5,15 @@ typedef struct {
     double states[6];
 } pam_slip;
 
+/* Turns every element over by `by`, from -1 to 1 by 2. */
+static inline void pam_slip_turn(pam_slip *slip, double by)
+{
+    int i;
+    for (i = 0; i < 6; i++) {
+        slip->states[i] = fmin(fmax(slip->states[i] + by, -1.0), 1.0);
+    }
+}
+
 /* Share of the full force, in [-1, 1], at a `position`; `settled` is the share at the first instant. */
 static inline double pam_slip_follow(pam_slip *slip, double distance, double position, double settled)
 {

@@ -47,7 +47,7 @@ fn without_terms_it_is_eq_11_to_the_bit() {
 
 #[test]
 fn settled_presliding_is_eq_11() {
-    let model = AugmentedModel::new(base(), vec![term("presliding-hysteresis", &[1e-3, 1.0], &[])]);
+    let model = AugmentedModel::new(base(), vec![term("presliding-hysteresis", &[1e-3, 1.0, 0.0], &[])]);
     for direction in [1.0, 0.0, -1.0] {
         let settled_n = model.settled_force_n(3e5, 0.24, direction);
         assert!((settled_n - base().force_n(3e5, 0.24, direction)).abs() < 1e-9);
@@ -56,7 +56,7 @@ fn settled_presliding_is_eq_11() {
 
 #[test]
 fn a_reversal_lets_go_of_the_friction_over_the_slip_distance() {
-    let model = AugmentedModel::new(base(), vec![term("presliding-hysteresis", &[1e-3, 1.0], &[])]);
+    let model = AugmentedModel::new(base(), vec![term("presliding-hysteresis", &[1e-3, 1.0, 0.0], &[])]);
     let mut memory = model.start();
     let at = |length_m, step_s, direction| Moment { step_s, ..Moment::settled(&nominal(), 3e5, length_m, direction) };
     memory.force_n(&model, at(0.24, 0.0, 1.0));
