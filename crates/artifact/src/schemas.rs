@@ -1,7 +1,7 @@
 //! The published JSON schemas, which programs print with `--schema`.
 //!
 //! They are written from the types by `scripts/schemas` and held against them by `cargo test -p pam-cli -p pam-bench`: derived in
-//! the programs, they would be a seventh of what this crate has compiled.
+//! the programs, they would be a good part of what is compiled into each.
 
 macro_rules! published {
     ($($(#[$doc:meta])* $name:ident = $file:literal;)*) => {

@@ -1,7 +1,7 @@
 //! The virtual bench: a muscle whose truth is known, protocols that drive it, sensors that log it.
 //!
 //! A fit that is tried on data from its own formulas always succeeds. So the bench shares with the rest
-//! of the toolchain nothing but the dimensions of the muscle (`pam_muscle`): its tension is the
+//! of the toolchain nothing but the dimensions of the muscle (`pam_muscle::Muscle`): its tension is the
 //! derivative of stored energies, its friction acts step by step on the true motion, and what a
 //! recording holds has gone through noise, quantization and a clock.
 //!
