@@ -9,6 +9,7 @@ use crate::state::Setting;
 use crate::structure::{Feature, ProjectedResidual};
 use crate::trial::wants_another;
 use crate::verdict::Sizes;
+use crate::veto::stands_on_evidence;
 
 /// Share of the whole mismatch that structure over one coordinate must hold before it is asked what stands in for it.
 const STRUCTURED: f64 = 0.2;
@@ -103,7 +104,8 @@ pub(crate) fn let_go(
         let id = guess.id();
         // What is left beside what other recordings surely show has another reason.
         let is_confirmed = found.taken.get(index).is_some_and(|taken| taken.is_confirmed);
-        if !is_confirmed && stands_in(guess) && found.let_go(setting, index) {
+        let stands = is_confirmed || stands_on_evidence(guess.effect, found.evidence(index));
+        if !stands && stands_in(guess) && found.let_go(setting, index) {
             found.stand_ins.push(id);
         }
     }

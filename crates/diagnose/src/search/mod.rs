@@ -106,6 +106,11 @@ impl Found {
         &judged.held_out
     }
 
+    /// Evidence for effect `index` within what was fitted, beside the others.
+    pub(crate) fn evidence(&self, index: usize) -> f64 {
+        self.taken.get(index).map_or(0.0, |taken| taken.without.log_ratio(&taken.with))
+    }
+
     /// Lets go of effect `index`; `setting` has the nuisances that were in. False where the rest determines no fit.
     pub(crate) fn let_go(&mut self, setting: &Setting<'_>, index: usize) -> bool {
         let rest = setting.fit_without(&self.best.state, index).and_then(|state| judged(setting, state));
