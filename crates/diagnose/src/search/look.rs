@@ -12,6 +12,7 @@ use crate::nuisance::{Group, Nuisance};
 use crate::plausible::strains;
 use crate::state::Setting;
 use crate::trial::{self, Shapes, Trial};
+use crate::verdict::RIVAL;
 
 /// Share of what the static map takes up that a static effect must take up to be named in its place.
 const OF_THE_MAP: f64 = 0.93;
@@ -188,9 +189,10 @@ impl Look<'_> {
         }
         let statics = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static() && !effect.is_odd();
         let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &statics);
+        let best_ratio = trials.first().map_or(0.0, |trial| trial.log_ratio);
         let stands = |trial: &&Trial| {
             let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
-            stands_for_map(gained, map, trial.log_ratio)
+            stands_for_map(gained, map, trial.log_ratio) && trial.log_ratio > RIVAL * best_ratio
         };
         let named: Vec<(bool, Judged)> = trials
             .iter()
