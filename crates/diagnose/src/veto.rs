@@ -426,6 +426,14 @@ mod tests {
     }
 
     #[test]
+    fn what_outlasts_a_recording_needs_twice_the_evidence_and_a_static_effect_has_never_enough() {
+        let stands = |id: &str, evidence| stands_on_evidence(pam_muscle::effects::effect(id).expect("an id"), evidence);
+        assert!(!stands("pressure-lag", STANDS_ALONE) && stands("pressure-lag", STANDS_ALONE + 1e-9));
+        assert!(!stands("force-drift", OUTLASTS_ALONE) && stands("force-drift", OUTLASTS_ALONE + 1e-9));
+        assert!(!stands("threshold-pressure", 1e3));
+    }
+
+    #[test]
     fn what_other_recordings_cannot_show_stands_on_strong_evidence_alone() {
         let stands = |id: &str, shape: &[f64], times: f64| {
             let given = Given::of(&["multisine"], &[]);

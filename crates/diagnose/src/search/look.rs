@@ -69,9 +69,10 @@ impl Asked {
     }
 }
 
-/// Whether a static effect that gains `gained` where the map takes up `map`, both in N², stands for it.
-fn stands_for_map(gained: f64, map: f64, log_ratio: f64) -> bool {
-    gained > OF_THE_MAP * map && log_ratio > LEAST_LOG_RATIO
+/// Whether a static effect that gains `gained` where the map takes up `map`, both in N², stands for it; another one has the evidence
+/// `best_ratio` at most. One that is beaten by far is not what it looks like, whatever speaks against the other.
+fn stands_for_map(gained: f64, map: f64, log_ratio: f64, best_ratio: f64) -> bool {
+    gained > OF_THE_MAP * map && log_ratio > LEAST_LOG_RATIO && log_ratio > RIVAL * best_ratio
 }
 
 /// What every look at the catalogue shares.
@@ -192,7 +193,7 @@ impl Look<'_> {
         let best_ratio = trials.first().map_or(0.0, |trial| trial.log_ratio);
         let stands = |trial: &&Trial| {
             let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
-            stands_for_map(gained, map, trial.log_ratio) && trial.log_ratio > RIVAL * best_ratio
+            stands_for_map(gained, map, trial.log_ratio, best_ratio)
         };
         let named: Vec<(bool, Judged)> = trials
             .iter()

@@ -113,6 +113,23 @@ fn what_leaves_too_much_is_let_go_of_unless_other_recordings_show_it() {
 }
 
 #[test]
+fn strong_evidence_keeps_a_name_that_leaves_much() {
+    // Four blocks of which a lag explains so much each.
+    let kept = |ratio_of_each: f64| {
+        Desk::new().ask(vec![guess("pressure-lag", &[0.15, 0.0])], |setting, mut found, limits| {
+            let held = |square: f64| HeldOut { blocks: vec![square; 4], counts: vec![1.0; 4], floor_square: 0.0 };
+            let without = held(ratio_of_each.exp());
+            found.taken = vec![Taken { without, with: held(1.0), rivals: Vec::new(), is_confirmed: false }];
+            let sizes = Sizes { left_n: 1.0, ..leaving(Sizes::of(&found, limits), 0.5) };
+            let_go(setting, &mut found, &sizes, limits, None);
+            ids(&found)
+        })
+    };
+    assert_eq!(kept(2.6), ["pressure-lag"]);
+    assert!(kept(2.4).is_empty());
+}
+
+#[test]
 fn where_most_is_left_every_name_goes_that_is_not_confirmed() {
     let two = || vec![guess("pressure-lag", &[0.15, 0.0]), guess("viscous-damping", &[])];
     assert!(kept(two(), 0.0, 0.7, false).is_empty());

@@ -34,6 +34,9 @@ const SURELY: f64 = 3.0;
 const CORRELATED: f64 = 25.0;
 /// Share of the force that the sum has to explain.
 const EXPLAINED: f64 = 0.8;
+/// Share of the highest pressure that the pressure must range over. Friction is a tenth of the force, either way, and a regulator that sags
+/// with the motion turns over as friction does: what lies within says nothing of a gain.
+const LEAST_RANGE: f64 = 0.2;
 /// Range of a bladder, for the column `B`, in Pa.
 const BLADDER_PA: [f64; 2] = [118.4e3, 105.7e3];
 /// A vented muscle has no pressure; below this a gauge has its zero elsewhere, in Pa.
@@ -81,8 +84,11 @@ pub fn find(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
             return Some(Fault::GaugeZero { path: path(), lowest_kpa, shift_kpa });
         }
     }
+    if !moves(look) {
+        return None;
+    }
     let (gain, explained, error) = gain(look, muscle)?;
-    // A pressure that hardly moves does not tell a gain from a zero.
+    // A pressure that moves little does not tell a gain from a zero.
     let may_be_in_order = gain + SURELY * error > BEYOND.0 && gain - SURELY * error < BEYOND.1;
     if explained < EXPLAINED || may_be_in_order || gain <= 0.0 {
         return None;
@@ -96,6 +102,15 @@ pub fn find(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
         .map(|(_, words)| words)
         .collect();
     (!guesses.is_empty()).then(|| Fault::Gain { path: path(), gain, guesses: guesses.join("; or ") })
+}
+
+/// Whether the pressure moves far enough to tell a gain from friction.
+fn moves(look: &Look) -> bool {
+    let widen = |(low, high): (f64, f64), (pressure_pa, _, _): (f64, f64, f64)| {
+        (f64::min(low, pressure_pa), f64::max(high, pressure_pa))
+    };
+    let (low, high) = look.rows().fold((f64::INFINITY, f64::NEG_INFINITY), widen);
+    high - low > LEAST_RANGE * high.abs()
 }
 
 /// `g` by least squares, the share of the force that the sum explains, and the standard error of `g`; none where the force says
@@ -131,4 +146,34 @@ fn gain(look: &Look, muscle: &Muscle) -> Option<(f64, f64, f64)> {
     }
     let error = (CORRELATED * residual / n * inverse[(0, 0)]).sqrt();
     Some((found[0], 1.0 - residual / spread, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Loops of a muscle around the pressure `pressure_pa`, which sags by so much while the muscle contracts; the gain that its force
+    /// would have.
+    fn loops(pressure_pa: f64, sag_pa: f64) -> (Look, Option<f64>) {
+        let model = crate::testing::model();
+        let rows = (0..2000).map(|row| {
+            let (phase, rows) = (f64::from(row % 200), f64::from(row));
+            let (along, way) = if phase < 100.0 { (phase / 100.0, 1.0) } else { (2.0 - phase / 100.0, -1.0) };
+            let length_m = 0.26 - 0.03 * along;
+            let pressure_pa = pressure_pa - 0.5 * sag_pa * way + 20.0 * (0.7 * rows).sin();
+            (pressure_pa, length_m, model.force_n(pressure_pa, length_m, 0.0) - 20.0 * way)
+        });
+        let look = Look::of(rows);
+        let gain = gain(&look, model.muscle()).map(|(gain, _, _)| gain);
+        (look, gain)
+    }
+
+    #[test]
+    fn a_regulator_that_sags_with_the_motion_says_nothing_of_a_gain() {
+        // Friction that turns over with the sag passes for a gain.
+        let (look, gain) = loops(2.4e5, 3e3);
+        assert!(gain.is_some_and(|gain| gain > BEYOND.1), "{gain:?}");
+        assert!(!moves(&look));
+        assert!(moves(&loops(2.4e5, 8e4).0));
+    }
 }

@@ -11,5 +11,12 @@ fn as_much_of_a_map_as_is_asked_is_not_enough() {
 
 #[test]
 fn as_much_evidence_as_is_asked_is_not_enough() {
-    assert!(!stands_for_map(100.0, 100.0, LEAST_LOG_RATIO) && stands_for_map(100.0, 100.0, LEAST_LOG_RATIO + 1e-9));
+    let stands = |log_ratio, best_ratio| stands_for_map(100.0, 100.0, log_ratio, best_ratio);
+    assert!(!stands(LEAST_LOG_RATIO, LEAST_LOG_RATIO) && stands(LEAST_LOG_RATIO + 1e-9, LEAST_LOG_RATIO));
+}
+
+#[test]
+fn a_static_effect_that_another_one_beats_by_far_does_not_stand_for_the_map() {
+    let stands = |log_ratio| stands_for_map(100.0, 100.0, log_ratio, 100.0);
+    assert!(!stands(100.0 * RIVAL) && stands(100.0 * RIVAL + 1e-9));
 }

@@ -115,9 +115,9 @@ fn what_acts_through_the_base_or_strains_it_needs_more_of_a_map() {
 
 #[test]
 fn an_effect_stands_for_a_map_where_it_gains_nearly_all_of_it_with_evidence() {
-    assert!(stands_for_map(93.1, 100.0, 1.6));
-    assert!(!stands_for_map(92.9, 100.0, 9.0) && !stands_for_map(99.0, 100.0, 1.5));
-    assert!(!stands_for_map(93.0, 100.0, 9.0), "no more than the share");
+    assert!(stands_for_map(93.1, 100.0, 1.6, 1.6));
+    assert!(!stands_for_map(92.9, 100.0, 9.0, 9.0) && !stands_for_map(99.0, 100.0, 1.5, 1.5));
+    assert!(!stands_for_map(93.0, 100.0, 9.0, 9.0), "no more than the share");
 }
 
 #[test]
