@@ -27,40 +27,12 @@ mod prony;
 pub use augmented::{AugmentedMemory, AugmentedModel, Past, Term};
 pub use catalogue::{CATALOGUE, Mount, NAMELESS, effect, static_map};
 pub use moment::{Base, Moment};
-pub use page::{Page, Symbol, Typical};
+pub use page::{Kind, Page, Role, Symbol, Typical};
 pub use sentence::Sentence;
 
 use std::fmt;
 
 use crate::geometry::Muscle;
-
-/// Where an effect acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Role {
-    /// Moves a channel in time; [`Effect::delays_s`].
-    Shift,
-    /// Changes the pressure or the length that the muscle sees; [`Memory::sees`].
-    Sees,
-    /// Takes the place of the direction in the friction of eq. 11; [`Memory::slides`].
-    Slides,
-    /// Adds a force; [`Memory::pulls`].
-    Pulls,
-    /// Changes what the load cell reads of the force; [`Memory::reads`].
-    Reads,
-}
-
-/// Owner of an effect; a simulation of the muscle takes the muscle's alone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
-    /// A sensor, its wiring or its clock.
-    Instrument,
-    /// The bench around the muscle.
-    Fixture,
-    /// The muscle itself, its tube included.
-    Muscle,
-    /// Something that happened once, in one recording.
-    Event,
-}
 
 /// A parameter in which the force is nonlinear; SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,10 +94,14 @@ pub trait Effect: Sync {
     fn page(&self) -> &'static Page;
 
     /// Where it acts.
-    fn role(&self) -> Role;
+    fn role(&self) -> Role {
+        self.page().role
+    }
 
     /// Its owner.
-    fn kind(&self) -> Kind;
+    fn kind(&self) -> Kind {
+        self.page().kind
+    }
 
     /// Parameters in which the force is nonlinear.
     fn shape(&self) -> &'static [Shape];

@@ -2,11 +2,43 @@
 
 use crate::coordinate::Coordinate;
 
+/// Where an effect acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Moves a channel in time; [`Effect::delays_s`](super::Effect::delays_s).
+    Shift,
+    /// Changes the pressure or the length that the muscle sees; [`Memory::sees`](super::Memory::sees).
+    Sees,
+    /// Takes the place of the direction in the friction of eq. 11; [`Memory::slides`](super::Memory::slides).
+    Slides,
+    /// Adds a force; [`Memory::pulls`](super::Memory::pulls).
+    Pulls,
+    /// Changes what the load cell reads of the force; [`Memory::reads`](super::Memory::reads).
+    Reads,
+}
+
+/// Owner of an effect; a simulation of the muscle takes the muscle's alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// A sensor, its wiring or its clock.
+    Instrument,
+    /// The bench around the muscle.
+    Fixture,
+    /// The muscle itself, its tube included.
+    Muscle,
+    /// Something that happened once, in one recording.
+    Event,
+}
+
 /// The page of an effect in the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Page {
     /// Catalogue id, kebab case.
     pub id: &'static str,
+    /// Where it acts.
+    pub role: Role,
+    /// Its owner.
+    pub kind: Kind,
     /// Name in words, as in "the muscle shows …".
     pub name: &'static str,
     /// The mechanism, in two or three sentences.

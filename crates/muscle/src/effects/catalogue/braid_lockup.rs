@@ -32,20 +32,12 @@ impl Effect for BraidLockup {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
     fn is_static(&self) -> bool {
         true
     }
 
     fn is_local(&self) -> bool {
         true
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -86,6 +78,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "braid-lockup",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "lock-up of the braid",
     summary: "Beyond some contraction neighbouring strands touch, and the braid cannot open further. The force falls \
               steeply there, at the same contraction whatever the pressure.",

@@ -23,14 +23,6 @@ impl Effect for ChannelDelay {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Shift
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Instrument
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[
             Shape {
@@ -76,6 +68,8 @@ impl Memory for State {}
 
 static PAGE: Page = Page {
     id: "channel-delay",
+    role: Role::Shift,
+    kind: Kind::Instrument,
     name: "delay between the channels",
     summary: "Serial lines, filters and loggers that poll deliver the channels some milliseconds apart. In fast motion \
               the model then computes the force of another instant.",

@@ -31,16 +31,8 @@ impl Effect for EndTaper {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
     fn is_static(&self) -> bool {
         true
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -79,6 +71,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "end-taper",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "taper of the ends",
     summary: "At its fittings the muscle keeps its diameter at rest, so that a contracted muscle ends in two cones. They \
               hold less gas than a cylinder, and the muscle pulls less the more it has contracted.",

@@ -23,14 +23,6 @@ impl Effect for FatigueWear {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[Shape { name: "exponent", symbol: "γ", unit: "1", range: (0.2, 1.5), grid: &[0.5, 1.0] }]
     }
@@ -85,6 +77,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "fatigue-wear",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "fatigue and wear",
     summary: "Strands abrade, the weave opens and the ends creep, so that over hundreds of cycles the muscle pulls less \
               at the same pressure and length. Nothing of it recovers.",

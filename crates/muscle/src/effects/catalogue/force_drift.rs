@@ -18,14 +18,6 @@ impl Effect for ForceDrift {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Instrument
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[Shape { name: "warm_up_s", symbol: "τ", unit: "s", range: (20.0, 4e3), grid: &[30.0, 120.0, 400.0] }]
     }
@@ -64,6 +56,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "force-drift",
+    role: Role::Pulls,
+    kind: Kind::Instrument,
     name: "drift of the load cell",
     summary: "The zero of the load cell wanders with its temperature: evenly over hours, and faster in the first minutes \
               after switching on. Whatever the muscle does, the drift goes on.",

@@ -22,14 +22,6 @@ impl Effect for ForceStep {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Event
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[
             Shape { name: "recording", symbol: "recording", unit: "1", range: (0.0, 1e6), grid: &[0.0] },
@@ -87,6 +79,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "force-step",
+    role: Role::Pulls,
+    kind: Kind::Event,
     name: "step of the force",
     summary: "At one instant the force jumps and stays: a clamp slipped, the cell was knocked or re-zeroed, a strand \
               broke. Everything after that instant is shifted, in that recording alone or, where the step goes on, in all \

@@ -25,14 +25,6 @@ impl Effect for Inertia {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Fixture
-    }
-
     fn shape(&self) -> &'static [Shape] {
         // Below, a mount is so soft that its mass looks like damping.
         &[Shape { name: "mount_hz", symbol: "f", unit: "Hz", range: (12.0, RIGID_HZ), grid: &[25.0, RIGID_HZ] }]
@@ -94,6 +86,8 @@ impl Mount {
 
 static PAGE: Page = Page {
     id: "inertia",
+    role: Role::Pulls,
+    kind: Kind::Fixture,
     name: "inertia of what moves",
     summary: "A load cell on the moving end reads the force of the muscle less what its own mount and a third of the \
               muscle take to be accelerated.",

@@ -18,20 +18,12 @@ impl Effect for LoadDependentFriction {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
     fn is_static(&self) -> bool {
         true
     }
 
     fn is_odd(&self) -> bool {
         true
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -57,6 +49,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "load-dependent-friction",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "friction that grows with the load",
     summary: "Friction that the tension itself presses on: of strands that bend around the ends, or of a cable over a \
               pulley or in a sheath. The force on the way in and on the way out have the same quotient everywhere.",

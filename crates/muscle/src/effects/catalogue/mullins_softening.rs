@@ -19,14 +19,6 @@ impl Effect for MullinsSoftening {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[
             Shape {
@@ -123,6 +115,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "mullins-softening",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "Mullins softening of the bladder",
     summary: "Rubber is softer where it has been stretched further before, and settles over its first cycles. The first \
               inflation to a new contraction meets the full resistance of the bladder, and every later cycle below it \

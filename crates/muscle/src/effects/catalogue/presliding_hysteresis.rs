@@ -22,14 +22,6 @@ impl Effect for PreslidingHysteresis {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Slides
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[
             Shape {
@@ -124,6 +116,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "presliding-hysteresis",
+    role: Role::Slides,
+    kind: Kind::Muscle,
     name: "pre-sliding hysteresis of the braid",
     summary: "Strands that rub against one another bend before they slide, so after each reversal the friction \
               builds up over a distance of the order of a millimetre instead of jumping at once. Its full value grows \

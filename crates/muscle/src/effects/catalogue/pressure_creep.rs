@@ -25,16 +25,8 @@ impl Effect for PressureCreep {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
     fn has_one_sign(&self) -> bool {
         true
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -87,6 +79,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "pressure-creep",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "creep under pressure",
     summary: "Strands under tension stretch on, and the weave settles, for seconds to minutes after each change of \
               what the gas pulls. The force overshoots and comes down at constant pressure and length.",

@@ -19,14 +19,6 @@ impl Effect for PressureGaugeHysteresis {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Instrument
-    }
-
     fn uses_slopes(&self) -> bool {
         true
     }
@@ -55,6 +47,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "pressure-gauge-hysteresis",
+    role: Role::Pulls,
+    kind: Kind::Instrument,
     name: "hysteresis of the pressure gauge",
     summary: "A membrane that follows late shows less on the way up than on the way down, so the pressure in the muscle \
               is higher than recorded while it rises and lower while it falls, however slowly.",

@@ -23,14 +23,6 @@ impl Effect for PressureLag {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Sees
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[
             Shape {
@@ -135,6 +127,8 @@ impl Memory for SecondOrder {
 
 static PAGE: Page = Page {
     id: "pressure-lag",
+    role: Role::Sees,
+    kind: Kind::Muscle,
     name: "lag of the pressure in the tube",
     summary: "The gauge sits at the valve and the muscle behind a tube, so the pressure in the muscle follows what is \
               recorded with a lag.",

@@ -18,14 +18,6 @@ impl Effect for RateDependentHysteresis {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[Shape {
             name: "onset_speed_m_per_s",
@@ -58,6 +50,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "rate-dependent-hysteresis",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "rate dependence of the hysteresis",
     summary: "The loop of force over length widens a little with every decade of speed, far less than in proportion. \
               Friction of polymers has this law over many decades.",

@@ -19,14 +19,6 @@ impl Effect for RubberHysteresis {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[Shape {
             name: "slip_distance_m",
@@ -61,6 +53,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "rubber-hysteresis",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "hysteresis of the rubber",
     summary: "Filled rubber, and a bladder that sticks to itself, take another path back than they went, however \
               slowly. The loop has the same height at every pressure, which is what tells it from friction of the \

@@ -21,16 +21,8 @@ impl Effect for SeriesCompliance {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Sees
-    }
-
     fn is_static(&self) -> bool {
         true
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Fixture
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -104,6 +96,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "series-compliance",
+    role: Role::Sees,
+    kind: Kind::Fixture,
     name: "compliance of the fixture",
     summary: "Load cell, frame and cable stretch with the force, so the muscle is shorter than recorded. A muscle that \
               is held at its ends contracts a little as it pulls.",

@@ -33,20 +33,12 @@ impl Effect for Slack {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Reads
-    }
-
     fn is_static(&self) -> bool {
         true
     }
 
     fn is_local(&self) -> bool {
         true
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -121,6 +113,8 @@ fn taut_n(above_n: f64, softness_n: f64) -> f64 {
 
 static PAGE: Page = Page {
     id: "slack",
+    role: Role::Reads,
+    kind: Kind::Muscle,
     name: "slack",
     summary: "A cable goes slack and a soft muscle buckles before either pushes, so the load cell reads its floor \
               wherever the model has the muscle push.",

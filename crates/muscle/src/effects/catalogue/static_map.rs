@@ -86,14 +86,6 @@ impl Effect for StaticMap {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn is_static(&self) -> bool {
         true
     }
@@ -132,6 +124,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "static-map",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "smooth static map",
     summary: "What the form of eq. 11, the dimensions of the muscle file and the law of the rubber leave of a smooth static \
               force. It has no name in physics and is fitted beside every effect.",

@@ -29,14 +29,6 @@ impl Effect for Stribeck {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[
             Shape {
@@ -107,6 +99,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "stribeck",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "Stribeck effect",
     summary: "Friction of the braid is larger at a crawl than in motion. It falls with the speed over some millimetres \
               per second and breaks away after a rest, which makes slow motion under a soft load jerky.",

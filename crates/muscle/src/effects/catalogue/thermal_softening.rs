@@ -28,14 +28,6 @@ impl Effect for ThermalSoftening {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[Shape { name: "time_constant_s", symbol: "τ", unit: "s", range: (20.0, 3e3), grid: &[60.0, 200.0, 600.0] }]
     }
@@ -83,6 +75,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "thermal-softening",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "thermal softening of the bladder",
     summary: "Friction and hysteresis warm a muscle that works, over minutes, and its bladder resists less. Rest cools \
               it down again. Where a temperature was logged, the bladder follows that as well.",

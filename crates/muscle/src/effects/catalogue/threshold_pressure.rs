@@ -21,20 +21,12 @@ impl Effect for ThresholdPressure {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Sees
-    }
-
     fn is_static(&self) -> bool {
         true
     }
 
     fn is_local(&self) -> bool {
         true
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -73,6 +65,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "threshold-pressure",
+    role: Role::Sees,
+    kind: Kind::Muscle,
     name: "threshold pressure of the bladder",
     summary: "A bladder that is narrower than its braid must be inflated to it before the gas pulls at all. Below the \
               threshold the muscle gives no force, above it works as with so much less pressure.",

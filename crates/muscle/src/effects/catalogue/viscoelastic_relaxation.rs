@@ -19,14 +19,6 @@ impl Effect for ViscoelasticRelaxation {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[Shape {
             name: "time_constant_s", symbol: "τ", unit: "s", range: (0.02, 300.0), grid: &[0.03, 0.2, 1.0, 6.0]
@@ -56,6 +48,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "viscoelastic-relaxation",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "viscoelastic relaxation of the bladder",
     summary: "After a change of the length the rubber pulls against the change by more than it does in the end, and \
               the surplus dies away over seconds to minutes. Pressure alone, at a fixed length, does not excite it.",

@@ -21,14 +21,6 @@ impl Effect for ViscousDamping {
         &PAGE
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[]
     }
@@ -56,6 +48,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: "viscous-damping",
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "viscous damping",
     summary: "Rubber and lubricated strands resist motion in proportion to its speed.",
     equation: "F = F_base - (c₀ + c₁ p / p_ref) v,  p_ref = 0.3 MPa",

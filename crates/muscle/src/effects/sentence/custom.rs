@@ -128,7 +128,6 @@ struct Custom {
     template: Value,
     pointers: Vec<String>,
     page: &'static Page,
-    kind: Kind,
     shape: &'static [Shape],
     amplitudes: &'static [Amplitude],
 }
@@ -199,11 +198,6 @@ impl Custom {
             template,
             pointers: free.into_iter().map(|free| free.pointer).collect(),
             page: Box::leak(Box::new(page)),
-            kind: match written.belongs_to {
-                BelongsTo::Muscle => Kind::Muscle,
-                BelongsTo::Instrument => Kind::Instrument,
-                BelongsTo::Fixture => Kind::Fixture,
-            },
             shape: shape.leak(),
             amplitudes: amplitudes.leak(),
         })
@@ -300,6 +294,12 @@ fn page(written: &WrittenEffect, sentence: &Sentence, shape: &[Shape], amplitude
     };
     Page {
         id: written.id.clone().leak(),
+        role: Role::Pulls,
+        kind: match written.belongs_to {
+            BelongsTo::Muscle => Kind::Muscle,
+            BelongsTo::Instrument => Kind::Instrument,
+            BelongsTo::Fixture => Kind::Fixture,
+        },
         name: written.name.clone().leak(),
         summary: given(&written.summary, "An effect of a file of one's own."),
         equation: sentence.equation().leak(),
@@ -335,14 +335,6 @@ fn symbol(name: &'static str) -> &'static str {
 impl Effect for Custom {
     fn page(&self) -> &'static Page {
         self.page
-    }
-
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
-    fn kind(&self) -> Kind {
-        self.kind
     }
 
     fn shape(&self) -> &'static [Shape] {

@@ -85,15 +85,7 @@ impl Effect for Own {
         self.page
     }
 
-    fn role(&self) -> Role {
-        Role::Pulls
-    }
-
     /// Of the muscle as far as anyone knows: what has no name belongs to nothing else.
-    fn kind(&self) -> Kind {
-        Kind::Muscle
-    }
-
     fn shape(&self) -> &'static [Shape] {
         &[]
     }
@@ -139,6 +131,8 @@ impl Memory for State {
 
 static PAGE: Page = Page {
     id: EMPIRICAL,
+    role: Role::Pulls,
+    kind: Kind::Muscle,
     name: "empirical term",
     summary: "A force that recordings show and that has no name in the catalogue: what drives it, what it remembers of that, \
               what it is in proportion to and how it answers are those that foretell held-out recordings best.",
