@@ -72,7 +72,6 @@ pub fn fit_shortly(muscle: MuscleFile, recording: Recording, accept_implausible:
         loss: Loss::Square,
         free: Vec::new(),
         fix: Vec::new(),
-        bladder_ratio: 0.89,
         length_play_m: None,
         pressure_play_pa: None,
         assumed: pam_artifact::model::Assumed::default(),
