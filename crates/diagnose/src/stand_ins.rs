@@ -85,7 +85,8 @@ pub(crate) fn leaves_too_much(found: &Found, sizes: &Sizes) -> bool {
 
 /// Lets go of the one effect of `found` that leaves too much; where the verdict is `unexplained`, of every effect that leaves far
 /// more than it explains, and of every local static one beside which structure is left over the very coordinate that it acts on,
-/// which `left_over` is: a static force of another shape. What remains of the sizes.
+/// which `left_over` is: a static force of another shape. What other recordings surely show stays, and so does what has the evidence
+/// that stands without them: it explains in part. What remains of the sizes.
 pub(crate) fn let_go(
     setting: &Setting<'_>,
     found: &mut Found,

@@ -34,8 +34,8 @@ const SURELY: f64 = 3.0;
 const CORRELATED: f64 = 25.0;
 /// Share of the force that the sum has to explain.
 const EXPLAINED: f64 = 0.8;
-/// Share of the highest pressure that the pressure must range over. Friction is a tenth of the force, either way, and a regulator that sags
-/// with the motion turns over as friction does: what lies within says nothing of a gain.
+/// Share of the highest pressure that the pressure must range over. Friction is 2 to 11 % of a muscle's force,
+/// either way, and a regulator that sags with the motion turns over as friction does: what lies within says nothing of a gain.
 const LEAST_RANGE: f64 = 0.2;
 /// Range of a bladder, for the column `B`, in Pa.
 const BLADDER_PA: [f64; 2] = [118.4e3, 105.7e3];
