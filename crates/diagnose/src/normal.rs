@@ -269,13 +269,13 @@ fn products_of(rows: &[f64], width: usize) -> DMatrix<f64> {
     let mut sums = vec![0.0; width * width];
     // The widest vectors that the processor has; nothing is fused, so that every processor gives the same bits.
     dispatch!(Level::new(), _ => sum_products(rows, width, &mut sums));
-    let mut out = DMatrix::zeros(width, width);
-    for i in 0..width {
-        for j in i..width {
-            out[(i, j)] = sums[i * width + j];
-            out[(j, i)] = sums[i * width + j];
-        }
-    }
+    mirrored(&sums, width)
+}
+
+/// The symmetric matrix whose upper triangle `sums` holds, row by row.
+pub(crate) fn mirrored(sums: &[f64], width: usize) -> DMatrix<f64> {
+    let mut out = DMatrix::from_row_slice(width, width, sums);
+    out.fill_lower_triangle_with_upper_triangle();
     out
 }
 

@@ -35,19 +35,7 @@ impl Rehearsal {
 
     /// The same with another longest step.
     fn with_steps(takes: &[Take], reach: &Reach<'_>, longest_step_s: f64) -> Self {
-        let mut rehearsal = Self {
-            track: Track {
-                instants: Vec::new(),
-                recordings: Vec::new(),
-                blocks: Vec::new(),
-                recording_of_block: Vec::new(),
-                fold_of_block: Vec::new(),
-                counted: Vec::new(),
-                sampled: Vec::new(),
-                known_forms_n: Vec::new(),
-            },
-            stands_for_s: Vec::new(),
-        };
+        let mut rehearsal = Self { track: Track::default(), stands_for_s: Vec::new() };
         for (index, take) in takes.iter().enumerate() {
             rehearsal.add(take, reach, index, longest_step_s);
         }

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use crate::coordinates::Coordinates;
 use crate::hypothesis::ranges;
 use crate::joint::HeldOut;
+use crate::normal::mirrored;
 use crate::state::{Setting, State};
 use crate::track::FOLDS;
 
@@ -395,14 +396,7 @@ impl ProjectedResidual {
                 }
             }
         }
-        let mut out = DMatrix::zeros(width, width);
-        for i in 0..width {
-            for j in i..width {
-                out[(i, j)] = sums[i * width + j];
-                out[(j, i)] = sums[i * width + j];
-            }
-        }
-        out
+        mirrored(&sums, width)
     }
 }
 

@@ -32,7 +32,7 @@ const MOST_SPARSE: usize = 20;
 pub const FOLDS: usize = 8;
 
 /// The instants of all recordings, one after the other.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Track {
     /// The instants.
     pub instants: Vec<Instant>,
@@ -83,16 +83,7 @@ impl Track {
         let walked = walked?;
         let n: usize = walked.iter().map(Vec::len).sum();
         let per_block = (n / BLOCKS).max(1);
-        let mut track = Self {
-            instants: Vec::with_capacity(n),
-            recordings: Vec::new(),
-            blocks: Vec::new(),
-            recording_of_block: Vec::new(),
-            fold_of_block: Vec::new(),
-            counted: Vec::new(),
-            sampled: Vec::new(),
-            known_forms_n: Vec::new(),
-        };
+        let mut track = Self { instants: Vec::with_capacity(n), ..Self::default() };
         // What was recorded decides which blocks go together, not the order or the names of the files.
         let mut by_content: Vec<usize> = (0..recordings.len()).collect();
         by_content.sort_by_key(|&index| &recordings[index].recording.sha256);

@@ -2,31 +2,14 @@
 
 use std::path::PathBuf;
 
-use pam_recording::spelling::unreadable;
+use pam_recording::toml_file::TomlFileError;
 
 /// Why a configuration is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
-    /// The file cannot be read.
-    #[error("cannot read configuration {}: {}", path.display(), unreadable(path, reason))]
-    Read {
-        /// File asked for.
-        path: PathBuf,
-        /// Message of the system.
-        reason: std::io::Error,
-    },
-    /// The text is not a configuration.
-    #[error("{}:{line}:{column}: {reason}", path.display())]
-    Parse {
-        /// File being read.
-        path: PathBuf,
-        /// Line, counted from 1.
-        line: usize,
-        /// Column, counted from 1.
-        column: usize,
-        /// Message of the parser.
-        reason: String,
-    },
+    /// It cannot be read, or is no TOML of its kind.
+    #[error(transparent)]
+    File(#[from] TomlFileError),
     /// A value outside its range, or no number.
     #[error("{}: {key} = {value} is outside {lowest} to {highest}; {remedy}", path.display())]
     OutOfRange {

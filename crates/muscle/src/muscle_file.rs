@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use pam_recording::spelling::{nearest, number, toml_fault, unreadable};
+use pam_recording::spelling::{nearest, number};
+use pam_recording::toml_file::{self, TomlFileError};
 use serde::Deserialize;
 
 use crate::geometry::{Dimension, Muscle};
@@ -46,26 +47,9 @@ fn nylon_modulus_gpa() -> f64 {
 /// Why a muscle file is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum MuscleError {
-    /// The file cannot be read.
-    #[error("cannot read muscle file {}: {}", path.display(), unreadable(path, reason))]
-    Read {
-        /// File asked for.
-        path: PathBuf,
-        /// What the system said.
-        reason: std::io::Error,
-    },
-    /// The text is not a muscle file.
-    #[error("{}:{line}:{column}: {reason}", path.display())]
-    Parse {
-        /// File being read.
-        path: PathBuf,
-        /// Line, counted from 1.
-        line: usize,
-        /// Column, counted from 1.
-        column: usize,
-        /// What the parser found.
-        reason: String,
-    },
+    /// It cannot be read, or is no TOML of its kind.
+    #[error(transparent)]
+    File(#[from] TomlFileError),
     /// A value that no muscle has.
     #[error("{}: {key} = {} is outside {lowest} to {highest}; check the value and its unit", path.display(), number(*value))]
     OutOfRange {
@@ -106,8 +90,7 @@ impl MuscleFile {
     /// # Errors
     /// See [`MuscleFile::read`].
     pub fn read_with_text(path: &Path) -> Result<(Self, String), MuscleError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|reason| MuscleError::Read { path: path.to_owned(), reason })?;
+        let text = toml_file::read_text(path, "muscle file")?;
         Ok((Self::parse(&text, path)?, text))
     }
 
@@ -116,10 +99,7 @@ impl MuscleFile {
     /// # Errors
     /// See [`MuscleFile::read`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, MuscleError> {
-        let written: MuscleToml = toml::from_str(text).map_err(|error| {
-            let (line, column, reason) = toml_fault(text, &error);
-            MuscleError::Parse { path: path.to_owned(), line, column, reason }
-        })?;
+        let written: MuscleToml = toml_file::parse(text, path)?;
         let within = |key, value: f64, lowest, highest| {
             if value >= lowest && value <= highest {
                 Ok(value)

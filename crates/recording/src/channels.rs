@@ -16,7 +16,8 @@ use super::options::{Calibration, Columns, FixedChannel, OptionSyntaxError, Read
 use super::samples::MAX_COLUMNS;
 use super::units::Quantity;
 use super::wording::shown_name;
-use crate::spelling::{nearest, place_in, toml_fault, unreadable};
+use crate::spelling::{nearest, place_in};
+use crate::toml_file::{self, TomlFileError};
 
 /// Schema name and version.
 pub const SCHEMA: &str = "pam-channels/1";
@@ -71,26 +72,9 @@ struct Channel {
 /// Why a channels file is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ChannelsError {
-    /// The file cannot be read.
-    #[error("cannot read channels file {}: {}", path.display(), unreadable(path, reason))]
-    Read {
-        /// File asked for.
-        path: PathBuf,
-        /// What the system said.
-        reason: std::io::Error,
-    },
-    /// The text is not a channels file.
-    #[error("{}:{line}:{column}: {reason}", path.display())]
-    Parse {
-        /// File being read.
-        path: PathBuf,
-        /// Line, counted from 1.
-        line: usize,
-        /// Column, counted from 1.
-        column: usize,
-        /// What the parser found.
-        reason: String,
-    },
+    /// It cannot be read, or is no TOML of its kind.
+    #[error(transparent)]
+    File(#[from] TomlFileError),
     /// A table, or a list, that cannot be used.
     #[error("{}:{line}:{column}: {fault}", path.display())]
     Entry {
@@ -209,8 +193,7 @@ impl Channels {
     /// # Errors
     /// [`ChannelsError`] names the file and the line, and what to do.
     pub fn read(path: &Path) -> Result<Self, ChannelsError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|reason| ChannelsError::Read { path: path.to_owned(), reason })?;
+        let text = toml_file::read_text(path, "channels file")?;
         Self::parse(&text, path)
     }
 
@@ -219,10 +202,7 @@ impl Channels {
     /// # Errors
     /// As [`Channels::read`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, ChannelsError> {
-        let file: ChannelsFile = toml::from_str(text).map_err(|error| {
-            let (line, column, reason) = toml_fault(text, &error);
-            ChannelsError::Parse { path: path.to_owned(), line, column, reason }
-        })?;
+        let file: ChannelsFile = toml_file::parse(text, path)?;
         let refuse = |start: usize, fault| {
             let (line, column) = place_in(text, start);
             ChannelsError::Entry { path: path.to_owned(), line, column, fault }
@@ -236,7 +216,7 @@ impl Channels {
                 let start = names.span().start;
                 let columns = Columns::of(names.as_ref().iter().map(String::as_str))
                     .map_err(|fault| refuse(start, ChannelFault::Columns { fault }))?;
-                Ok(Columns { if_no_header: true, ..columns })
+                Ok::<_, ChannelsError>(Columns { if_no_header: true, ..columns })
             })
             .transpose()?;
         let mut channels = Self {

@@ -40,6 +40,7 @@ mod source;
 pub mod spelling;
 mod spill;
 mod stamps;
+pub mod toml_file;
 mod units;
 mod wording;
 

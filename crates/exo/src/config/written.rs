@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pam_recording::spelling::toml_fault;
+use pam_recording::toml_file;
 #[cfg(feature = "schemas")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -169,8 +169,7 @@ impl LiftConfig {
     /// # Errors
     /// [`ConfigError`] names the file, and the key or the line, and what to do.
     pub fn read(path: &Path) -> Result<(Self, LiftPlan, String), ConfigError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|reason| ConfigError::Read { path: path.to_owned(), reason })?;
+        let text = toml_file::read_text(path, "configuration")?;
         let config = Self::parse(&text, path)?;
         let plan = config.clone().check(path)?;
         Ok((config, plan, text))
@@ -179,11 +178,8 @@ impl LiftConfig {
     /// Parses the text of a configuration; `path` is for messages.
     ///
     /// # Errors
-    /// [`ConfigError::Parse`].
+    /// [`ConfigError::File`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, ConfigError> {
-        toml::from_str(text).map_err(|error| {
-            let (line, column, reason) = toml_fault(text, &error);
-            ConfigError::Parse { path: path.to_owned(), line, column, reason }
-        })
+        Ok(toml_file::parse(text, path)?)
     }
 }

@@ -27,7 +27,7 @@ mod prony;
 pub use augmented::{AugmentedMemory, AugmentedModel, Past, Term};
 pub use catalogue::{CATALOGUE, Mount, NAMELESS, effect, static_map};
 pub use moment::{Base, Moment};
-pub use page::{Kind, Page, Role, Symbol, Typical};
+pub use page::{Dependence, Kind, Page, Role, Symbol, Typical};
 pub use sentence::Sentence;
 
 use std::fmt;
@@ -131,7 +131,7 @@ pub trait Effect: Sync {
 
     /// Whether a static effect acts in a part of the range alone, where no smooth map follows it.
     fn is_local(&self) -> bool {
-        false
+        self.page().dependence == Dependence::PartOfState
     }
 
     /// Whether all its amplitudes have the same sign, whichever it is.
@@ -142,13 +142,13 @@ pub trait Effect: Sync {
     /// Whether it changes the force over pressure, length and direction alone, without a memory: a smooth static map can
     /// stand in for it.
     fn is_static(&self) -> bool {
-        false
+        self.page().dependence != Dependence::Past
     }
 
     /// Whether a static effect is friction: its force is odd in the direction of motion, so that only the odd part of a static map
     /// can stand in for it, and what eq. 11 misses of a static force cannot.
     fn is_odd(&self) -> bool {
-        false
+        self.page().dependence == Dependence::Direction
     }
 
     /// Whether it is itself still where shape `index` lies at this `end` of its range: an exponent says how, not what, and a mount

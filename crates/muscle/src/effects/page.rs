@@ -30,6 +30,20 @@ pub enum Kind {
     Event,
 }
 
+/// What the force of an effect depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Dependence {
+    /// What went before, time, or speed.
+    Past,
+    /// Pressure, length and direction alone: a smooth static map can stand in for it.
+    State,
+    /// The same, in a part of the range alone, where no smooth map follows it.
+    PartOfState,
+    /// The same, odd in the direction of motion: friction, for which only the odd part of a static map can stand in, and what eq. 11
+    /// misses of a static force cannot.
+    Direction,
+}
+
 /// The page of an effect in the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Page {
@@ -39,6 +53,8 @@ pub struct Page {
     pub role: Role,
     /// Its owner.
     pub kind: Kind,
+    /// What it depends on.
+    pub dependence: Dependence,
     /// Name in words, as in "the muscle shows …".
     pub name: &'static str,
     /// The mechanism, in two or three sentences.

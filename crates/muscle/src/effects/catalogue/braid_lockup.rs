@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Seen, Shape};
 use crate::geometry::Muscle;
 
@@ -30,14 +30,6 @@ pub(super) struct BraidLockup;
 impl Effect for BraidLockup {
     fn page(&self) -> &'static Page {
         &PAGE
-    }
-
-    fn is_static(&self) -> bool {
-        true
-    }
-
-    fn is_local(&self) -> bool {
-        true
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -80,6 +72,7 @@ static PAGE: Page = Page {
     id: "braid-lockup",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::PartOfState,
     name: "lock-up of the braid",
     summary: "Beyond some contraction neighbouring strands touch, and the braid cannot open further. The force falls \
               steeply there, at the same contraction whatever the pressure.",

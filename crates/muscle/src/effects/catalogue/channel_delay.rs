@@ -7,7 +7,7 @@
 //! with the delays of pressure and length behind the force. Only two delays of three channels can be found.
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Effect, Kind, Memory, Role, Seen, Shape};
 use crate::geometry::Muscle;
 
@@ -70,6 +70,7 @@ static PAGE: Page = Page {
     id: "channel-delay",
     role: Role::Shift,
     kind: Kind::Instrument,
+    dependence: Dependence::Past,
     name: "delay between the channels",
     summary: "Serial lines, filters and loggers that poll deliver the channels some milliseconds apart. In fast motion \
               the model then computes the force of another instant.",

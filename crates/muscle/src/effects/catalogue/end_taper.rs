@@ -18,7 +18,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::{Kinematics, Muscle};
 
@@ -29,10 +29,6 @@ pub(super) struct EndTaper;
 impl Effect for EndTaper {
     fn page(&self) -> &'static Page {
         &PAGE
-    }
-
-    fn is_static(&self) -> bool {
-        true
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -73,6 +69,7 @@ static PAGE: Page = Page {
     id: "end-taper",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::State,
     name: "taper of the ends",
     summary: "At its fittings the muscle keeps its diameter at rest, so that a contracted muscle ends in two cones. They \
               hold less gas than a cylinder, and the muscle pulls less the more it has contracted.",

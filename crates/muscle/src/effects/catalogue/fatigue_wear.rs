@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -79,6 +79,7 @@ static PAGE: Page = Page {
     id: "fatigue-wear",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "fatigue and wear",
     summary: "Strands abrade, the weave opens and the ends creep, so that over hundreds of cycles the muscle pulls less \
               at the same pressure and length. Nothing of it recovers.",

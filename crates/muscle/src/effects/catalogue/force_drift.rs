@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -58,6 +58,7 @@ static PAGE: Page = Page {
     id: "force-drift",
     role: Role::Pulls,
     kind: Kind::Instrument,
+    dependence: Dependence::Past,
     name: "drift of the load cell",
     summary: "The zero of the load cell wanders with its temperature: evenly over hours, and faster in the first minutes \
               after switching on. Whatever the muscle does, the drift goes on.",

@@ -9,7 +9,7 @@
 //! and its cell as they are now, and holds for any other recording as it stands.
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Seen, Shape};
 use crate::geometry::Muscle;
 
@@ -81,6 +81,7 @@ static PAGE: Page = Page {
     id: "force-step",
     role: Role::Pulls,
     kind: Kind::Event,
+    dependence: Dependence::Past,
     name: "step of the force",
     summary: "At one instant the force jumps and stays: a clamp slipped, the cell was knocked or re-zeroed, a strand \
               broke. Everything after that instant is shifted, in that recording alone or, where the step goes on, in all \

@@ -9,7 +9,7 @@
 use std::f64::consts::TAU;
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -88,6 +88,7 @@ static PAGE: Page = Page {
     id: "inertia",
     role: Role::Pulls,
     kind: Kind::Fixture,
+    dependence: Dependence::Past,
     name: "inertia of what moves",
     summary: "A load cell on the moving end reads the force of the muscle less what its own mount and a third of the \
               muscle take to be accelerated.",

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -16,14 +16,6 @@ pub(super) struct LoadDependentFriction;
 impl Effect for LoadDependentFriction {
     fn page(&self) -> &'static Page {
         &PAGE
-    }
-
-    fn is_static(&self) -> bool {
-        true
-    }
-
-    fn is_odd(&self) -> bool {
-        true
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -51,6 +43,7 @@ static PAGE: Page = Page {
     id: "load-dependent-friction",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Direction,
     name: "friction that grows with the load",
     summary: "Friction that the tension itself presses on: of strands that bend around the ends, or of a cable over a \
               pulley or in a sheath. The force on the way in and on the way out have the same quotient everywhere.",

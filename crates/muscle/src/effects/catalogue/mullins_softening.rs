@@ -6,7 +6,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -117,6 +117,7 @@ static PAGE: Page = Page {
     id: "mullins-softening",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "Mullins softening of the bladder",
     summary: "Rubber is softer where it has been stretched further before, and settles over its first cycles. The first \
               inflation to a new contraction meets the full resistance of the bladder, and every later cycle below it \

@@ -8,7 +8,7 @@
 //! share σ of what the model's own law of friction at standstill says; a muscle whose friction is held has κ = σ = 0.
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::slip::Follower;
 use crate::effects::{Effect, Kind, Memory, Moment, Role, Seen, Shape};
 use crate::geometry::Muscle;
@@ -118,6 +118,7 @@ static PAGE: Page = Page {
     id: "presliding-hysteresis",
     role: Role::Slides,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "pre-sliding hysteresis of the braid",
     summary: "Strands that rub against one another bend before they slide, so after each reversal the friction \
               builds up over a distance of the order of a millimetre instead of jumping at once. Its full value grows \

@@ -8,7 +8,7 @@
 //! With `s = 0` inflation alone drives it; with `s = 1` so does a change of the length under pressure.
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::prony::Overstress;
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
@@ -50,6 +50,11 @@ impl Effect for PressureCreep {
         ]
     }
 
+    /// Wholly by the gas force is how, not what.
+    fn may_end(&self, index: usize, end: f64) -> bool {
+        index == 1 && end == 1.0
+    }
+
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         let overstress = Overstress::new(shape[0]);
         Box::new(State { share_of_length: shape[1], area_m2: 0.0, by_pressure: overstress, by_force: overstress })
@@ -81,6 +86,7 @@ static PAGE: Page = Page {
     id: "pressure-creep",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "creep under pressure",
     summary: "Strands under tension stretch on, and the weave settles, for seconds to minutes after each change of \
               what the gas pulls. The force overshoots and comes down at constant pressure and length.",

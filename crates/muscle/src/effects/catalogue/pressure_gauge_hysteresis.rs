@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::slip::Follower;
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
@@ -49,6 +49,7 @@ static PAGE: Page = Page {
     id: "pressure-gauge-hysteresis",
     role: Role::Pulls,
     kind: Kind::Instrument,
+    dependence: Dependence::Past,
     name: "hysteresis of the pressure gauge",
     summary: "A membrane that follows late shows less on the way up than on the way down, so the pressure in the muscle \
               is higher than recorded while it rises and lower while it falls, however slowly.",

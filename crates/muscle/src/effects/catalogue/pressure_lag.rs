@@ -10,7 +10,7 @@
 
 use crate::coordinate::Coordinate;
 use crate::effects::lag::Lag;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -129,6 +129,7 @@ static PAGE: Page = Page {
     id: "pressure-lag",
     role: Role::Sees,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "lag of the pressure in the tube",
     summary: "The gauge sits at the valve and the muscle behind a tube, so the pressure in the muscle follows what is \
               recorded with a lag.",

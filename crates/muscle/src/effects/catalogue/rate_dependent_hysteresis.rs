@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -52,6 +52,7 @@ static PAGE: Page = Page {
     id: "rate-dependent-hysteresis",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "rate dependence of the hysteresis",
     summary: "The loop of force over length widens a little with every decade of speed, far less than in proportion. \
               Friction of polymers has this law over many decades.",

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::slip::Follower;
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
@@ -55,6 +55,7 @@ static PAGE: Page = Page {
     id: "rubber-hysteresis",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "hysteresis of the rubber",
     summary: "Filled rubber, and a bladder that sticks to itself, take another path back than they went, however \
               slowly. The loop has the same height at every pressure, which is what tells it from friction of the \

@@ -8,7 +8,7 @@
 //! below one.
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -19,10 +19,6 @@ pub(super) struct SeriesCompliance;
 impl Effect for SeriesCompliance {
     fn page(&self) -> &'static Page {
         &PAGE
-    }
-
-    fn is_static(&self) -> bool {
-        true
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -98,6 +94,7 @@ static PAGE: Page = Page {
     id: "series-compliance",
     role: Role::Sees,
     kind: Kind::Fixture,
+    dependence: Dependence::State,
     name: "compliance of the fixture",
     summary: "Load cell, frame and cable stretch with the force, so the muscle is shorter than recorded. A muscle that \
               is held at its ends contracts a little as it pulls.",

@@ -8,7 +8,7 @@
 //! Gere, 1961, "Theory of Elastic Stability"), and with its square the length that it takes from the muscle between its ends.
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Effect, Kind, Memory, Role, Seen, Shape};
 use crate::geometry::Muscle;
 
@@ -31,14 +31,6 @@ pub(super) struct Slack;
 impl Effect for Slack {
     fn page(&self) -> &'static Page {
         &PAGE
-    }
-
-    fn is_static(&self) -> bool {
-        true
-    }
-
-    fn is_local(&self) -> bool {
-        true
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -115,6 +107,7 @@ static PAGE: Page = Page {
     id: "slack",
     role: Role::Reads,
     kind: Kind::Muscle,
+    dependence: Dependence::PartOfState,
     name: "slack",
     summary: "A cable goes slack and a soft muscle buckles before either pushes, so the load cell reads its floor \
               wherever the model has the muscle push.",

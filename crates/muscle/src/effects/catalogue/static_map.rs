@@ -9,7 +9,7 @@
 //! both together, the second to the second.
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Page, Symbol, Typical};
+use crate::effects::page::{Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -86,10 +86,6 @@ impl Effect for StaticMap {
         &PAGE
     }
 
-    fn is_static(&self) -> bool {
-        true
-    }
-
     fn shape(&self) -> &'static [Shape] {
         RIMS
     }
@@ -126,6 +122,7 @@ static PAGE: Page = Page {
     id: "static-map",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::State,
     name: "smooth static map",
     summary: "What the form of eq. 11, the dimensions of the muscle file and the law of the rubber leave of a smooth static \
               force. It has no name in physics and is fitted beside every effect.",

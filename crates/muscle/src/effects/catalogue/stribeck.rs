@@ -9,7 +9,7 @@
 //! Stribeck, whose friction at rest is the largest.
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -101,6 +101,7 @@ static PAGE: Page = Page {
     id: "stribeck",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "Stribeck effect",
     summary: "Friction of the braid is larger at a crawl than in motion. It falls with the speed over some millimetres \
               per second and breaks away after a rest, which makes slow motion under a soft load jerky.",

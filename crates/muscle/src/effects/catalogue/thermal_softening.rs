@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -77,6 +77,7 @@ static PAGE: Page = Page {
     id: "thermal-softening",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "thermal softening of the bladder",
     summary: "Friction and hysteresis warm a muscle that works, over minutes, and its bladder resists less. Rest cools \
               it down again. Where a temperature was logged, the bladder follows that as well.",

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -19,14 +19,6 @@ pub(super) struct ThresholdPressure;
 impl Effect for ThresholdPressure {
     fn page(&self) -> &'static Page {
         &PAGE
-    }
-
-    fn is_static(&self) -> bool {
-        true
-    }
-
-    fn is_local(&self) -> bool {
-        true
     }
 
     fn shape(&self) -> &'static [Shape] {
@@ -67,6 +59,7 @@ static PAGE: Page = Page {
     id: "threshold-pressure",
     role: Role::Sees,
     kind: Kind::Muscle,
+    dependence: Dependence::PartOfState,
     name: "threshold pressure of the bladder",
     summary: "A bladder that is narrower than its braid must be inflated to it before the gas pulls at all. Below the \
               threshold the muscle gives no force, above it works as with so much less pressure.",

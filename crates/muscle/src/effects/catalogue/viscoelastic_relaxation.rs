@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::prony::Overstress;
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
@@ -50,6 +50,7 @@ static PAGE: Page = Page {
     id: "viscoelastic-relaxation",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "viscoelastic relaxation of the bladder",
     summary: "After a change of the length the rubber pulls against the change by more than it does in the end, and \
               the surplus dies away over seconds to minutes. Pressure alone, at a fixed length, does not excite it.",

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Page, Symbol, Typical};
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -50,6 +50,7 @@ static PAGE: Page = Page {
     id: "viscous-damping",
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "viscous damping",
     summary: "Rubber and lubricated strands resist motion in proportion to its speed.",
     equation: "F = F_base - (c₀ + c₁ p / p_ref) v,  p_ref = 0.3 MPa",

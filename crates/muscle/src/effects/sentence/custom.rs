@@ -17,8 +17,8 @@ use pam_recording::spelling::toml_fault;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Argument, Curve, Driver, Recall, Scale, Sentence, own};
-use crate::effects::page::{Page, Symbol, Typical};
+use super::{Argument, Curve, Scale, Sentence, own};
+use crate::effects::page::{Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, CATALOGUE, Effect, Kind, Memory, NAMELESS, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -279,6 +279,14 @@ fn shape(free: &Free, sentence: &Sentence) -> Shape {
     Shape { name, symbol: symbol(name), unit, range: (low, high), grid: grid.leak() }
 }
 
+fn dependence(sentence: &Sentence) -> Dependence {
+    match sentence.shape {
+        _ if !sentence.is_static() => Dependence::Past,
+        Curve::Bump { .. } | Curve::Saturation { .. } => Dependence::PartOfState,
+        _ => Dependence::State,
+    }
+}
+
 fn page(written: &WrittenEffect, sentence: &Sentence, shape: &[Shape], amplitudes: &[Amplitude]) -> Page {
     let ranged = |name: &'static str, symbol: &'static str, unit: &'static str, (low, high): (f64, f64)| Symbol {
         symbol,
@@ -300,6 +308,7 @@ fn page(written: &WrittenEffect, sentence: &Sentence, shape: &[Shape], amplitude
             BelongsTo::Instrument => Kind::Instrument,
             BelongsTo::Fixture => Kind::Fixture,
         },
+        dependence: dependence(sentence),
         name: written.name.clone().leak(),
         summary: given(&written.summary, "An effect of a file of one's own."),
         equation: sentence.equation().leak(),
@@ -343,15 +352,6 @@ impl Effect for Custom {
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         self.amplitudes
-    }
-
-    fn is_static(&self) -> bool {
-        let on_the_map = matches!(self.sentence.driver, Driver::Pressure | Driver::Contraction | Driver::Force);
-        self.sentence.memory == Recall::None && on_the_map
-    }
-
-    fn is_local(&self) -> bool {
-        matches!(self.sentence.shape, Curve::Bump { .. } | Curve::Saturation { .. })
     }
 
     fn has_one_sign(&self) -> bool {

@@ -65,6 +65,12 @@ impl Sentence {
         self.shape.n_amplitudes()
     }
 
+    /// Whether it depends on pressure, length and direction alone.
+    pub(crate) fn is_static(&self) -> bool {
+        let is_state = matches!(self.driver, Driver::Pressure | Driver::Contraction | Driver::Force);
+        self.memory == Recall::None && is_state
+    }
+
     /// Why it cannot be evaluated, in words.
     ///
     /// # Errors

@@ -2,9 +2,9 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use super::{Argument, Curve, Driver, Recall, Sentence};
+use super::{Argument, Curve, Sentence};
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Page, Symbol, Typical};
+use crate::effects::page::{Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
 use crate::geometry::Muscle;
 
@@ -99,8 +99,7 @@ impl Effect for Own {
     }
 
     fn is_static(&self) -> bool {
-        let on_the_map = matches!(self.sentence.driver, Driver::Pressure | Driver::Contraction | Driver::Force);
-        self.sentence.memory == Recall::None && on_the_map
+        self.sentence.is_static()
     }
 
     fn uses_slopes(&self) -> bool {
@@ -133,6 +132,7 @@ static PAGE: Page = Page {
     id: EMPIRICAL,
     role: Role::Pulls,
     kind: Kind::Muscle,
+    dependence: Dependence::Past,
     name: "empirical term",
     summary: "A force that recordings show and that has no name in the catalogue: what drives it, what it remembers of that, \
               what it is in proportion to and how it answers are those that foretell held-out recordings best.",
@@ -161,7 +161,7 @@ static PAGE: Page = Page {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Scale;
+    use super::super::{Driver, Recall, Scale};
     use super::*;
     use crate::effects::moment::tests::{base, pull, still};
     use crate::effects::{AugmentedModel, Term};
