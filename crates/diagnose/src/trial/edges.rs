@@ -37,13 +37,6 @@ fn a_range_on_both_sides_of_zero_has_its_ends_where_it_ends() {
 }
 
 #[test]
-fn creep_wholly_by_the_force_of_the_gas_is_creep_and_one_of_the_longest_time_is_another() {
-    let creep = effect("pressure-creep").expect("an id");
-    assert!(!is_degenerate(creep, &[1.0, 1.0]) && !is_degenerate(creep, &[1.0, 0.0]));
-    assert!(is_degenerate(creep, &[300.0, 1.0]));
-}
-
-#[test]
 fn beside_the_lowest_point_of_a_grid_a_step_goes_no_further_than_the_point_or_the_value_is_large() {
     let grid = [2.0, 4.0, 8.0];
     let step = |value| step_around(&grid, (0.0, 10.0), value);
