@@ -315,9 +315,8 @@ mod tests {
     }
 
     #[test]
-    fn a_creep_that_the_force_of_the_gas_alone_drives_is_creep_and_one_of_the_longest_time_is_not() {
-        assert!(!is_degenerate(of("pressure-creep"), &[6.0, 1.0]) && !is_degenerate(of("pressure-creep"), &[6.0, 0.0]));
-        assert!(is_degenerate(of("pressure-creep"), &[300.0, 1.0]));
+    fn a_creep_that_is_all_of_the_length_is_a_relaxation_instead() {
+        assert!(is_degenerate(of("pressure-creep"), &[6.0, 1.0]));
     }
 
     #[test]

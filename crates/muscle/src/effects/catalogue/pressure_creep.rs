@@ -50,11 +50,6 @@ impl Effect for PressureCreep {
         ]
     }
 
-    /// Wholly by the gas force is how, not what.
-    fn may_end(&self, index: usize, end: f64) -> bool {
-        index == 1 && end == 1.0
-    }
-
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         let overstress = Overstress::new(shape[0]);
         Box::new(State { share_of_length: shape[1], area_m2: 0.0, by_pressure: overstress, by_force: overstress })
