@@ -129,7 +129,7 @@ pub trait Effect: Sync {
         Vec::new()
     }
 
-    /// Whether a static effect acts in a part of the range alone, where no smooth map follows it.
+    /// Whether it acts in a part of the range alone; see [`Dependence::PartOfState`].
     fn is_local(&self) -> bool {
         self.page().dependence == Dependence::PartOfState
     }
@@ -139,14 +139,12 @@ pub trait Effect: Sync {
         false
     }
 
-    /// Whether it changes the force over pressure, length and direction alone, without a memory: a smooth static map can
-    /// stand in for it.
+    /// Whether it depends on pressure, length and direction alone; see [`Dependence`].
     fn is_static(&self) -> bool {
         self.page().dependence != Dependence::Past
     }
 
-    /// Whether a static effect is friction: its force is odd in the direction of motion, so that only the odd part of a static map
-    /// can stand in for it, and what eq. 11 misses of a static force cannot.
+    /// Whether a static effect is friction; see [`Dependence::Direction`].
     fn is_odd(&self) -> bool {
         self.page().dependence == Dependence::Direction
     }

@@ -279,14 +279,6 @@ fn shape(free: &Free, sentence: &Sentence) -> Shape {
     Shape { name, symbol: symbol(name), unit, range: (low, high), grid: grid.leak() }
 }
 
-fn dependence(sentence: &Sentence) -> Dependence {
-    match sentence.shape {
-        _ if !sentence.is_static() => Dependence::Past,
-        Curve::Bump { .. } | Curve::Saturation { .. } => Dependence::PartOfState,
-        _ => Dependence::State,
-    }
-}
-
 fn page(written: &WrittenEffect, sentence: &Sentence, shape: &[Shape], amplitudes: &[Amplitude]) -> Page {
     let ranged = |name: &'static str, symbol: &'static str, unit: &'static str, (low, high): (f64, f64)| Symbol {
         symbol,
@@ -308,7 +300,7 @@ fn page(written: &WrittenEffect, sentence: &Sentence, shape: &[Shape], amplitude
             BelongsTo::Instrument => Kind::Instrument,
             BelongsTo::Fixture => Kind::Fixture,
         },
-        dependence: dependence(sentence),
+        dependence: if sentence.is_static() { Dependence::State } else { Dependence::Past },
         name: written.name.clone().leak(),
         summary: given(&written.summary, "An effect of a file of one's own."),
         equation: sentence.equation().leak(),
@@ -352,6 +344,11 @@ impl Effect for Custom {
 
     fn amplitudes(&self) -> &'static [Amplitude] {
         self.amplitudes
+    }
+
+    /// Whatever drives it: a curve may act in a part of the time alone.
+    fn is_local(&self) -> bool {
+        matches!(self.sentence.shape, Curve::Bump { .. } | Curve::Saturation { .. })
     }
 
     fn has_one_sign(&self) -> bool {

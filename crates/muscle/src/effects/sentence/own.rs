@@ -132,6 +132,7 @@ static PAGE: Page = Page {
     id: EMPIRICAL,
     role: Role::Pulls,
     kind: Kind::Muscle,
+    // Each sentence says whether it has a past.
     dependence: Dependence::Past,
     name: "empirical term",
     summary: "A force that recordings show and that has no name in the catalogue: what drives it, what it remembers of that, \

@@ -27,6 +27,13 @@ fn a_file_gives_an_effect_with_its_ranges_as_shapes() {
 }
 
 #[test]
+fn what_acts_in_a_part_of_the_time_is_local_and_not_static() {
+    let of_time = GUARD.replace("driver = \"contraction\"", "driver = \"time\"");
+    let effect = custom_effects(&of_time).expect("effects")[0];
+    assert!(!effect.is_static() && effect.is_local() && !effect.is_odd());
+}
+
+#[test]
 fn it_pulls_as_its_sentence_at_that_shape_does() {
     let effect = custom_effects(GUARD).expect("effects")[0];
     let sentence = effect.sentence_at(&[0.09, 0.01]).expect("a sentence");
