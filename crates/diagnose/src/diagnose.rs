@@ -54,7 +54,7 @@ pub struct Request {
 }
 
 /// What was found.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Diagnosis {
     /// The model that was in question.
     pub model: ModelArtifact,

@@ -12,7 +12,7 @@ use crate::error::IdentifyError;
 use crate::faults;
 
 /// A recording with its quality gate, before a direction is known.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Gated {
     /// The recording.
     pub recording: Recording,
@@ -21,7 +21,7 @@ pub struct Gated {
 }
 
 /// A recording ready for a fit.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Prepared {
     /// The recording.
     pub recording: Recording,

@@ -289,6 +289,8 @@ impl Discovery {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::OnceLock;
+
     use pam_muscle::effects::sentence::{Driver, Recall, Scale};
 
     use super::*;
@@ -298,19 +300,34 @@ mod tests {
 
     const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
 
-    /// What is discovered in `given`, whose sensors leave 0.3 N, beside what is named.
-    fn discovered(given: &Given, held: Option<&Given>) -> Vec<Sentence> {
-        let limits =
-            Limits { excluded: vec!["braid-lockup".to_owned(), "end-taper".to_owned()], ..Limits::of_test(2, 0.3) };
-        let setting = Setting { floor_square: 0.09, ..given.setting() };
-        let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
-        let sizes = Sizes::of(&found, &limits);
-        let said = verdict(&found, &sizes, false);
-        let beside = setting.beside(&found.nuisance);
-        let left = |model: &AugmentedModel| Left::of(model, &held.expect("a hold-out").track);
-        let against = held.map(|held| HeldAgainst { left: &left, given: &held.model });
-        let discovery = discover(&beside, &found, &sizes, said, against);
-        discovery.map_or_else(Vec::new, |discovery| discovery.terms.into_iter().map(|term| term.sentence).collect())
+    /// What a search named in `given`, whose sensors leave 0.3 N.
+    struct Searched {
+        given: Given,
+        limits: Limits,
+        found: Found,
+    }
+
+    impl Searched {
+        fn of(given: Given) -> Self {
+            let excluded = vec!["braid-lockup".to_owned(), "end-taper".to_owned()];
+            let limits = Limits { excluded, ..Limits::of_test(2, 0.3) };
+            let setting = Setting { floor_square: 0.09, ..given.setting() };
+            let found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
+            Self { given, limits, found }
+        }
+
+        /// What is discovered beside it.
+        fn discovered(&self, held: Option<&Given>) -> Vec<Sentence> {
+            let Self { given, limits, found } = self;
+            let setting = Setting { floor_square: 0.09, ..given.setting() };
+            let sizes = Sizes::of(found, limits);
+            let said = verdict(found, &sizes, false);
+            let beside = setting.beside(&found.nuisance);
+            let left = |model: &AugmentedModel| Left::of(model, &held.expect("a hold-out").track);
+            let against = held.map(|held| HeldAgainst { left: &left, given: &held.model });
+            let discovery = discover(&beside, found, &sizes, said, against);
+            discovery.map_or_else(Vec::new, |discovery| discovery.terms.into_iter().map(|term| term.sentence).collect())
+        }
     }
 
     /// Noise that neighbors share, of about 0.2 N, and a bump of `height_n` at a contraction of 12 %.
@@ -324,21 +341,27 @@ mod tests {
         given
     }
 
+    /// What a search names where something touches the muscle.
+    fn touched() -> &'static Searched {
+        static TOUCHED: OnceLock<Searched> = OnceLock::new();
+        TOUCHED.get_or_init(|| Searched::of(bumped(8.0)))
+    }
+
     #[test]
     fn what_touches_the_muscle_at_one_length_is_a_sentence_of_the_contraction() {
-        let found = discovered(&bumped(8.0), None);
+        let found = touched().discovered(None);
         let first = found.first().expect("a sentence");
         assert_eq!((first.driver, first.memory, first.scale), (Driver::Contraction, Recall::None, Scale::One));
     }
 
     #[test]
     fn where_nothing_is_missing_nothing_is_discovered() {
-        assert_eq!(discovered(&bumped(0.0), None), []);
+        assert_eq!(Searched::of(bumped(0.0)).discovered(None), []);
     }
 
     #[test]
     fn what_held_out_recordings_do_not_show_is_not_written() {
-        assert_eq!(discovered(&bumped(8.0), Some(&bumped(0.0))), []);
-        assert!(!discovered(&bumped(8.0), Some(&bumped(8.0))).is_empty());
+        assert_eq!(touched().discovered(Some(&bumped(0.0))), []);
+        assert!(!touched().discovered(Some(&bumped(8.0))).is_empty());
     }
 }

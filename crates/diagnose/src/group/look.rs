@@ -63,7 +63,9 @@ pub(super) fn look(members: &[Member<'_>], effects: &[&'static dyn Effect]) -> V
     let all: Vec<&Member<'_>> = members.iter().collect();
     let on_grid: Vec<OnGrid> = effects.iter().filter_map(|effect| on_grid(&all, *effect)).collect();
     let most = on_grid.iter().map(|one| one.log_ratio).fold(0.0, f64::max);
-    let shared = |one: OnGrid| if one.log_ratio > PROMISES * most { one.refined(&all) } else { one.unrefined(&all) };
+    // What gains too little to be taken is not refined either.
+    let least = PROMISES * most.max(LEAST_LOG_RATIO);
+    let shared = |one: OnGrid| if one.log_ratio > least { one.refined(&all) } else { one.unrefined(&all) };
     let mut found: Vec<Shared> = on_grid.into_iter().filter_map(shared).collect();
     found.sort_by(|left, right| right.log_ratio().total_cmp(&left.log_ratio()));
     found

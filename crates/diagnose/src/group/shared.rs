@@ -136,6 +136,11 @@ fn descended(
     let mut steps: Vec<f64> = shapes.iter().zip(&guess.shape).map(step).collect();
     let sides = sides(shapes.len());
     let mut best = (gained, guess);
+    // Steps from neighbors lead to the same places, none of which is better.
+    let mut seen = vec![best.1.shape.clone()];
+    let is_near = |left: &[f64], right: &[f64], steps: &[f64]| {
+        left.iter().zip(right).zip(steps).all(|((left, right), step)| (left - right).abs() <= 1e-6 * step)
+    };
     for _ in 0..rounds {
         for _ in 0..MOST_STEPS {
             // The steepest way, as a first one that only rises may lead to a lesser top.
@@ -146,8 +151,11 @@ fn descended(
                 {
                     *value = (*value + way * step).clamp(parameter.range.0, parameter.range.1);
                 }
-                let gained = if tried.shape == best.1.shape { None } else { gains(&tried) };
-                Some((gained?, tried))
+                if seen.iter().any(|one| is_near(one, &tried.shape, &steps)) {
+                    return None;
+                }
+                seen.push(tried.shape.clone());
+                Some((gains(&tried)?, tried))
             });
             match stepped.max_by(|left, right| left.0.total_cmp(&right.0)).filter(|(gained, _)| *gained > best.0) {
                 Some(higher) => best = higher,

@@ -1,5 +1,7 @@
 use super::*;
 
+use std::sync::OnceLock;
+
 use crate::given::tests::{STROKES, artifact, diagnosed, recorded};
 
 /// The same strokes, begun a little later.
@@ -10,7 +12,8 @@ fn later(time_s: f64) -> (f64, f64) {
 /// A diagnosis of the model's own muscle, in which nothing is missing, with what it says of the recordings; `change` makes of them
 /// what is to be weighed.
 fn weighed(change: impl FnOnce(&mut Diagnosis, &mut Agreement)) -> Diagnosis {
-    let mut found = diagnosed(vec![recorded("later.csv", later, &artifact(), 1.0)]);
+    static FOUND: OnceLock<Diagnosis> = OnceLock::new();
+    let mut found = FOUND.get_or_init(|| diagnosed(vec![recorded("later.csv", later, &artifact(), 1.0)])).clone();
     let mut agreement = Agreement::of(&found).expect("agreement");
     change(&mut found, &mut agreement);
     found.weigh(&agreement).expect("a weighed diagnosis");
