@@ -74,7 +74,7 @@ pub struct EmpiricalCurve {
     pub low_n: Vec<f64>,
     /// Upper end.
     pub high_n: Vec<f64>,
-    /// Root mean square of the scale over what was fitted, in its unit.
+    /// Root mean square of the scale where the term acts, over what was fitted, in its unit.
     pub typical_scale: f64,
 }
 

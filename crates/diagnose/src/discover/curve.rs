@@ -19,7 +19,7 @@ pub(super) fn curve(
     amplitudes: &[f64],
     folds: &[Vec<f64>],
 ) -> EmpiricalCurve {
-    let (mut values, mut factors) = (Vec::new(), Vec::new());
+    let (mut values, mut acts, mut does) = (Vec::new(), 0.0, 0.0);
     for range in &setting.track.recordings {
         let mut argument = Argument::of(sentence);
         for at in range.clone() {
@@ -27,12 +27,15 @@ pub(super) fn curve(
             let value = argument.follow(now, base);
             if setting.track.counted[at] && value.is_finite() {
                 values.push(value);
-                factors.push(sentence.scale.factor(now, base));
+                let shape = sentence.value(value, amplitudes);
+                acts += shape.powi(2);
+                does += (sentence.scale.factor(now, base) * shape).powi(2);
             }
         }
     }
     values.sort_unstable_by(f64::total_cmp);
-    let typical = (factors.iter().map(|factor| factor * factor).sum::<f64>() / factors.len().max(1) as f64).sqrt();
+    // Of the scale where the term acts, since elsewhere it multiplies nothing.
+    let typical = if acts > 0.0 { (does / acts).sqrt() } else { 0.0 };
     let (Some(low), Some(high)) = (values.get(values.len() / 500), values.get(values.len() - 1 - values.len() / 500))
     else {
         return EmpiricalCurve::default();

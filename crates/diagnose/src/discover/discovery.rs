@@ -238,6 +238,9 @@ fn next_terms(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Vec<Cand
         let said = &said[index];
         let sentences = [step.sentences(), vec![said.sentence.clone()]].concat();
         let (next, nuisance) = joined::joined(setting, mapped, best, &sentences)?;
+        if !joined::is_within(&sentences, &nuisance, &next.state) {
+            return None;
+        }
         Some((best.held_out.log_ratio(&next.held_out) - said.charge(), index, next, nuisance))
     });
     let mut fitted: Vec<(f64, usize, Judged, Nuisance)> = fitted.collect();
@@ -255,6 +258,7 @@ fn next_terms(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Vec<Cand
         return Vec::new();
     }
     let shares = stability::chosen(&field, &said);
+    fitted.retain(|fitted| bent(&said[fitted.1]).is_some() || stability::is_steady(&said, &shares, fitted.1));
     let with = |(log_ratio, index, next, nuisance): (f64, usize, Judged, Nuisance)| {
         let mut chosen: Vec<(Said, f64)> = said.iter().cloned().zip(shares.iter().copied()).collect();
         let own = chosen.remove(index);

@@ -56,6 +56,11 @@ impl Said {
         charge(&self.sentence, self.evidence)
     }
 
+    /// Whether `other` has the same driver, whatever it remembers of it.
+    pub(super) fn has_driver_of(&self, other: &Self) -> bool {
+        self.sentence.driver.name() == other.sentence.driver.name()
+    }
+
     /// Whether `other` has the same driver and memory, whatever the numbers and the scale.
     pub(super) fn has_words_of(&self, other: &Self) -> bool {
         let words = |said: &Self| (said.sentence.driver.name(), said.sentence.memory.name());
