@@ -330,6 +330,7 @@ impl Diagnosis {
         if let Some((before, after)) = agreement.base_holdout.together.zip(agreement.holdout.together)
             && after.rmse_n > before.rmse_n
             && !self.entries.is_empty()
+            && self.raised(agreement).is_none()
         {
             warnings.push(format!(
                 "on what was held out the residual rises from {:.2} N to {:.2} N: the recordings differ in something else",

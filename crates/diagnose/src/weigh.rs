@@ -2,6 +2,7 @@
 //! it.
 
 use pam_artifact::diagnosis::{EmpiricalGain, Verdict};
+use pam_identification::evaluate::Evaluation;
 
 use crate::artifact::{Agreement, together};
 use crate::diagnose::Diagnosis;
@@ -15,11 +16,14 @@ use crate::{held, words};
 const FOLLOWED_WITHIN: f64 = 2.0;
 /// Times the sensors' noise that may be left of what is called explained.
 const EXPLAINED_WITHIN: f64 = 1.5;
+/// Times what the base model alone leaves of what was held out beyond which what is written follows that worse: more than rounding.
+const WORSE: f64 = 1.01;
 
 impl Diagnosis {
     /// Says the verdict in words and numbers, and lowers what is called explained to explained in part where, over all samples,
-    /// more is left than half as much again as the sensors leave, and says so. The model as given and what was held out decide,
-    /// too: where either is missed, nothing is consistent or explained, and that is said first.
+    /// more is left than half as much again as the sensors leave, or where what was held out is followed worse than by the base alone, and says
+    /// so. The model as given and what was held out decide, too: where either is missed, nothing is consistent or explained, and that
+    /// is said first.
     ///
     /// # Errors
     /// [`DiagnoseError::Recording`] where samples cannot be read back.
@@ -44,6 +48,15 @@ impl Diagnosis {
             self.statement.push_str(&format!(
                 " Over all samples, reversals included, {left_n:.2} N are left, where noise leaves {:.2} N.",
                 numbers.floor_n
+            ));
+        }
+        if let Some((before_n, after_n)) = self.raised(agreement) {
+            if self.verdict == Verdict::Explained {
+                self.verdict = Verdict::ExplainedInPart;
+            }
+            self.statement.push_str(&format!(
+                " With that, held-out recordings are followed worse: over all samples their RMSE rises from {before_n:.2} to {after_n:.2} N. \
+                 The finding rests on the fitted recordings alone."
             ));
         }
         let held::Held { missed, noticed, unjudged } = held::judge(self, agreement)?;
@@ -73,6 +86,14 @@ impl Diagnosis {
             && self.effects.is_empty()
             && self.empirical.is_none()
             && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)
+    }
+
+    /// What the base model alone and what is written leave of what was held out, over all samples, in N, where something is named and
+    /// leaves more there.
+    pub(crate) fn raised(&self, agreement: &Agreement) -> Option<(f64, f64)> {
+        let left_n = |held: &Evaluation| held.together.as_ref().map(|held| held.rmse_all_n);
+        let (before_n, after_n) = (left_n(&agreement.base_holdout)?, left_n(&agreement.holdout)?);
+        (!self.effects.is_empty() && after_n > WORSE * before_n).then_some((before_n, after_n))
     }
 
     /// Whether the augmented model has a smooth static map.

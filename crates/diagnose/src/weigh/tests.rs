@@ -2,7 +2,10 @@ use super::*;
 
 use std::sync::OnceLock;
 
+use pam_artifact::diagnosis::NamedEffect;
+
 use crate::given::tests::{STROKES, artifact, diagnosed, recorded};
+use crate::joint::HeldOut;
 
 /// The same strokes, begun a little later.
 fn later(time_s: f64) -> (f64, f64) {
@@ -29,6 +32,22 @@ fn base_leaves(agreement: &mut Agreement, times: f64) {
 /// The same of the model as it is written alone.
 fn written_leaves(agreement: &mut Agreement, times: f64) {
     agreement.holdout.together.as_mut().expect("a hold-out").rmse_all_n = times * agreement.noise_floor_n;
+}
+
+/// A lag as it is named, without values.
+fn lag() -> NamedEffect {
+    let page = pam_muscle::effects::effect("pressure-lag").expect("an id").page();
+    let without = HeldOut { blocks: vec![4.0; 8], counts: vec![10.0; 8], floor_square: 0.01 };
+    let with = HeldOut { blocks: vec![1.0; 8], ..without.clone() };
+    NamedEffect {
+        id: page.id.to_owned(),
+        name: page.name.to_owned(),
+        equation: page.equation.to_owned(),
+        parameters: Vec::new(),
+        evidence: crate::named::evidence(&without, &with, 1),
+        alternatives: Vec::new(),
+        separating_test: page.test.to_owned(),
+    }
 }
 
 #[test]
@@ -82,6 +101,25 @@ fn what_leaves_half_as_much_again_as_the_sensors_is_explained_in_part() {
     let part = explained(1.6);
     assert_eq!(part.verdict, Verdict::ExplainedInPart);
     assert!(part.statement.contains("Over all samples, reversals included"), "{}", part.statement);
+}
+
+#[test]
+fn what_raises_the_error_of_what_was_held_out_is_explained_in_part_and_the_statement_says_so() {
+    let explained = |names: bool, times: f64| {
+        weighed(|found, agreement| {
+            found.verdict = Verdict::Explained;
+            if names {
+                found.effects.push(lag());
+            }
+            base_leaves(agreement, 1.0);
+            written_leaves(agreement, times);
+        })
+    };
+    assert_eq!(explained(true, 1.0).verdict, Verdict::Explained);
+    let raised = explained(true, 1.1);
+    assert_eq!(raised.verdict, Verdict::ExplainedInPart);
+    assert!(raised.statement.contains("held-out recordings are followed worse"), "{}", raised.statement);
+    assert_eq!(explained(false, 1.1).verdict, Verdict::Explained, "nothing is named");
 }
 
 #[test]
