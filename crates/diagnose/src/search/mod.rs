@@ -352,7 +352,7 @@ mod tests {
         let forces_n = || given.track.instants.iter().zip(&given.track.counted).filter(|(_, counted)| **counted);
         let highest = forces_n().map(|(at, _)| at.force_n).fold(f64::NEG_INFINITY, f64::max);
         let lowest = forces_n().map(|(at, _)| at.force_n).fold(f64::INFINITY, f64::min);
-        let expected = (0.0135 * (highest - lowest)).powi(2);
+        let expected = (0.015 * (highest - lowest)).powi(2);
         let form_square = found(&given, 0).form_square;
         assert!((form_square - expected).abs() < 1e-9 * expected, "{form_square} {expected}");
     }
