@@ -9,8 +9,9 @@
 //!
 //! In reading order: [`discovery`] goes on as long as something gains; [`lexicon`] is what sentences are made of, [`field`]
 //! judges one, [`screen`] finds the best, [`joined`] fits it with everything else, [`held_error`](crate::held_error) asks what
-//! was held out, [`replaced`] whether it takes the place of a name, [`bends`] whether the term is another form
-//! of what was named, [`stability`] whether other draws of blocks would choose it, [`written`], [`curve`], [`nearest`] and [`said`] are what a person reads of it.
+//! was held out, [`replaced`] whether it takes the place of a name, [`bends`] whether the term is another form of what was named,
+//! [`stability`] whether other draws of blocks would choose it; [`written`], [`curve`], [`nearest`] and [`said`] are what a person reads
+//! of it.
 
 mod bends;
 mod curve;

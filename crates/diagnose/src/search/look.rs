@@ -23,8 +23,8 @@ const FORM: f64 = 25.0;
 /// The same as a share of the range of the force, root mean square. Of 70 healthy muscles that this was chosen by, in one half of
 /// which eq. 11 holds nowhere, four in five were within it; static effects at their published sizes begin at 0.5 %.
 const FORM_SHARE: f64 = 0.0045;
-/// The same that no healthy muscle has: the least regular of those 70 had 1.21 %, and of 164 others that were looked at 1.45 %. Of 134 nameless
-/// mismatches without a name none would be called consistent whatever this is.
+/// The same that no healthy muscle has: the least regular of those 70 had 1.21 %, and of 164 others that were looked at 1.45 %. Of 134
+/// nameless mismatches without a name none would be called consistent whatever this is.
 pub(super) const FORM_AT_MOST: f64 = 0.015;
 /// How much more, in mean squares, the map must take up for an effect that acts through eq. 11: what eq. 11 misses of a muscle looks
 /// like another stiffness of its own. Of four such effects that slices called up wrongly, the largest had 1.15 times the limit; of three
