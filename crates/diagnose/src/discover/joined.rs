@@ -8,6 +8,7 @@ use std::ops::Range;
 use pam_muscle::effects::sentence::{Argument, own};
 use pam_muscle::effects::{Amplitude, Sentence, Term};
 
+use super::curve::curve;
 use crate::joint::JointFit;
 use crate::nuisance::{Group, Nuisance};
 use crate::search::{Judged, judged};
@@ -63,14 +64,18 @@ pub(super) fn amplitudes(nuisance: &Nuisance, fit: &JointFit) -> Vec<Vec<f64>> {
     curves(nuisance).into_iter().map(|columns| nuisance.in_their_units(&fit.nuisances, columns)).collect()
 }
 
-/// Whether the amplitudes of `sentences` in `state` are such as a model may carry.
-pub(super) fn is_within(sentences: &[Sentence], nuisance: &Nuisance, state: &State) -> bool {
+/// Whether `sentences` are such as a model may carry, with their amplitudes in `state`: within what an amplitude may be, and nowhere
+/// along their curves larger than all that the force ranged over. A bump between two samples may be of any height.
+pub(super) fn is_within(setting: &Setting<'_>, sentences: &[Sentence], nuisance: &Nuisance, state: &State) -> bool {
+    let counted = setting.track.instants.iter().zip(&setting.track.counted).filter(|(_, counted)| **counted);
+    let (low_n, high_n) = counted.fold((f64::INFINITY, f64::NEG_INFINITY), |(low_n, high_n), (at, _)| {
+        (low_n.min(at.force_n), high_n.max(at.force_n))
+    });
     sentences.iter().zip(amplitudes(nuisance, &state.fit)).all(|(sentence, amplitudes)| {
-        own(sentence).is_ok_and(|effect| {
-            let within =
-                |(value, amplitude): (&f64, &Amplitude)| (amplitude.range.0..=amplitude.range.1).contains(value);
-            amplitudes.iter().zip(effect.amplitudes()).all(within)
-        })
+        let within = |(value, amplitude): (&f64, &Amplitude)| (amplitude.range.0..=amplitude.range.1).contains(value);
+        let curve = curve(setting, state, sentence, &amplitudes, &[]);
+        own(sentence).is_ok_and(|effect| amplitudes.iter().zip(effect.amplitudes()).all(within))
+            && curve.force_n.iter().all(|force_n| force_n.abs() <= high_n - low_n)
     })
 }
 
@@ -93,27 +98,38 @@ mod tests {
     use crate::nuisance::NONE;
     use crate::rehearsal::tests::Given;
 
-    /// Whether a model may carry a bump of so many newtons at a contraction of 12 %, fitted beside the base.
-    fn is_carried(height_n: f64) -> bool {
-        let shape = Curve::Bump { center: 0.12, width: 0.008 };
-        let bump =
-            Sentence { driver: Driver::Contraction, memory: Recall::None, scale: Scale::One, shape, seen: [0.0, 0.25] };
+    /// Recordings with a bump of so many newtons at a contraction of 12 %.
+    fn bumped(height_n: f64) -> Given {
         let mut given = Given::of(&["isobaric-triangles", "isometric-ramps"], &[]);
         for instant in &mut given.track.instants {
             let off = (instant.moment.contraction_ratio - 0.12) / 0.008;
             instant.force_n += height_n * (-off * off).exp();
         }
+        given
+    }
+
+    /// Whether a model of `given` may carry such a bump, fitted beside the base; `among` has the forces that there were.
+    fn is_carried(given: &Given, among: &Given) -> bool {
+        let bump = Sentence {
+            driver: Driver::Contraction,
+            memory: Recall::None,
+            scale: Scale::One,
+            shape: Curve::Bump { center: 0.12, width: 0.008 },
+            seen: [0.0, 0.25],
+        };
         let setting = given.setting();
         let base = setting.fit(Vec::new(), &given.start, &given.model).and_then(|state| judged(&setting, state));
         let sentences = [bump];
         let fitted = joined(&setting, &NONE, &base.expect("a fit"), &sentences);
         let (judged, nuisance) = fitted.expect("a fit beside it");
-        is_within(&sentences, &nuisance, &judged.state)
+        is_within(&among.setting(), &sentences, &nuisance, &judged.state)
     }
 
     #[test]
     fn what_no_muscle_pulls_with_is_carried_by_no_model() {
-        assert!(is_carried(30.0));
-        assert!(!is_carried(1e6));
+        let [small, large, endless] = [30.0, 3e3, 1e6].map(bumped);
+        assert!(is_carried(&small, &small) && is_carried(&large, &large));
+        assert!(!is_carried(&endless, &endless), "more than an amplitude may be");
+        assert!(!is_carried(&large, &small), "more than all that the force ranged over");
     }
 }
