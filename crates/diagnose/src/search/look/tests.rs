@@ -85,7 +85,7 @@ fn what_a_map_takes_up_in_any_muscle_is_of_the_sensors_or_of_the_range_of_the_fo
 
 #[test]
 fn a_map_is_asked_for_what_matters_and_for_what_no_healthy_muscle_has() {
-    // Sensors of 0.3 N leave 25 times 0.09 N² in any muscle, a range of 1000 N 4.5² N², and at most 13.5² N².
+    // Sensors of 0.3 N leave 25 times 0.09 N² in any muscle, a range of 1000 N 4.5² N², and at most 15² N².
     let asked = |limits: &Limits, floor_square, range_n| {
         let Asked { least, most } = Asked::of(limits, floor_square, range_n);
         (least, most)
@@ -94,10 +94,10 @@ fn a_map_is_asked_for_what_matters_and_for_what_no_healthy_muscle_has() {
         assert!((least - expected.0).abs() < 1e-9 && (most - expected.1).abs() < 1e-9, "{least} {most}");
     };
     let limits = Limits::of_test(3, 0.3);
-    near(asked(&limits, 0.02, 1000.0), (20.25, 182.25));
+    near(asked(&limits, 0.02, 1000.0), (20.25, 225.0));
     near(asked(&limits, 0.02, 10.0), (2.25, 2.25));
-    near(asked(&limits, 30.0, 1000.0), (30.09, 182.25));
-    near(asked(&Limits { matters_above_n: Some(6.0), ..limits }, 40.0, 1000.0), (36.0, 182.25));
+    near(asked(&limits, 30.0, 1000.0), (30.09, 225.0));
+    near(asked(&Limits { matters_above_n: Some(6.0), ..limits }, 40.0, 1000.0), (36.0, 225.0));
 }
 
 #[test]
