@@ -8,7 +8,7 @@ use std::ops::Range;
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
 use pam_muscle::direction::{Direction, Thresholds};
-use pam_muscle::effects::{AugmentedModel, Moment};
+use pam_muscle::effects::{AugmentedModel, Moment, Seen};
 use pam_muscle::force::ForceModel;
 use pam_muscle::motion::{Channels, Instant, walk};
 use pam_muscle::shift::shifted;
@@ -176,6 +176,11 @@ impl Track {
     /// Instants.
     pub fn n(&self) -> usize {
         self.instants.len()
+    }
+
+    /// What the instants that count have been through.
+    pub(crate) fn seen(&self) -> Seen {
+        Seen::of(self.instants.iter().zip(&self.counted).filter(|(_, counted)| **counted).map(|(at, _)| at))
     }
 
     /// Instants that count.

@@ -21,9 +21,9 @@ const WORSE: f64 = 1.01;
 
 impl Diagnosis {
     /// Says the verdict in words and numbers, and lowers what is called explained to explained in part where, over all samples,
-    /// more is left than half as much again as the sensors leave, or where what was held out is followed worse than by the base alone, and says
-    /// so. The model as given and what was held out decide, too: where either is missed, nothing is consistent or explained, and that
-    /// is said first.
+    /// more is left than half as much again as the sensors leave, or where what was held out is followed worse than by the base
+    /// alone, and says so. The model as given and what was held out decide, too: where either is missed, nothing is consistent or
+    /// explained, and that is said first.
     ///
     /// # Errors
     /// [`DiagnoseError::Recording`] where samples cannot be read back.

@@ -238,7 +238,7 @@ fn next_terms(setting: &Setting<'_>, mapped: &Nuisance, step: &Step) -> Vec<Cand
         let said = &said[index];
         let sentences = [step.sentences(), vec![said.sentence.clone()]].concat();
         let (next, nuisance) = joined::joined(setting, mapped, best, &sentences)?;
-        if !joined::is_within(&beside, &sentences, &nuisance, &next.state) {
+        if !joined::is_within(setting, &sentences, &nuisance, &next.state) {
             return None;
         }
         Some((best.held_out.log_ratio(&next.held_out) - said.charge(), index, next, nuisance))

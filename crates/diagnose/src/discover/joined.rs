@@ -67,10 +67,7 @@ pub(super) fn amplitudes(nuisance: &Nuisance, fit: &JointFit) -> Vec<Vec<f64>> {
 /// Whether `sentences` are such as a model may carry, with their amplitudes in `state`: within what an amplitude may be, and nowhere
 /// along their curves larger than all that the force ranged over. A bump between two samples may be of any height.
 pub(super) fn is_within(setting: &Setting<'_>, sentences: &[Sentence], nuisance: &Nuisance, state: &State) -> bool {
-    let counted = setting.track.instants.iter().zip(&setting.track.counted).filter(|(_, counted)| **counted);
-    let (low_n, high_n) = counted.fold((f64::INFINITY, f64::NEG_INFINITY), |(low_n, high_n), (at, _)| {
-        (low_n.min(at.force_n), high_n.max(at.force_n))
-    });
+    let (low_n, high_n) = setting.track.seen().force_n;
     sentences.iter().zip(amplitudes(nuisance, &state.fit)).all(|(sentence, amplitudes)| {
         let within = |(value, amplitude): (&f64, &Amplitude)| (amplitude.range.0..=amplitude.range.1).contains(value);
         let curve = curve(setting, state, sentence, &amplitudes, &[]);

@@ -113,8 +113,7 @@ impl<'a> Member<'a> {
             &coordinates,
             &model,
         );
-        let seen =
-            Seen::of(track.instants.iter().zip(&track.counted).filter(|(_, counted)| **counted).map(|(at, _)| at));
+        let seen = track.seen();
         let bare = question.setting(&track, &of_recordings);
         let start = crate::base::coordinates(question.model, &question.space);
         let base = judged(&bare, bare.fit(Vec::new(), &start, &model)?)?;

@@ -137,7 +137,7 @@ fn descended(
     let sides = sides(shapes.len());
     let mut best = (gained, guess);
     // Steps from neighbors lead to the same places, none of which is better.
-    let mut seen = vec![best.1.shape.clone()];
+    let mut places = vec![best.1.shape.clone()];
     let is_near = |left: &[f64], right: &[f64], steps: &[f64]| {
         left.iter().zip(right).zip(steps).all(|((left, right), step)| (left - right).abs() <= 1e-6 * step)
     };
@@ -151,10 +151,10 @@ fn descended(
                 {
                     *value = (*value + way * step).clamp(parameter.range.0, parameter.range.1);
                 }
-                if seen.iter().any(|one| is_near(one, &tried.shape, &steps)) {
+                if places.iter().any(|place| is_near(place, &tried.shape, &steps)) {
                     return None;
                 }
-                seen.push(tried.shape.clone());
+                places.push(tried.shape.clone());
                 Some((gains(&tried)?, tried))
             });
             match stepped.max_by(|left, right| left.0.total_cmp(&right.0)).filter(|(gained, _)| *gained > best.0) {

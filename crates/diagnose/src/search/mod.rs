@@ -10,7 +10,7 @@ mod settle;
 mod worth;
 
 use pam_muscle::Coordinate;
-use pam_muscle::effects::{Effect, Seen};
+use pam_muscle::effects::Effect;
 
 use crate::coordinates::Coordinates;
 use crate::hypothesis::CandidateEffect;
@@ -167,7 +167,7 @@ pub fn search(
     };
     coordinates.replace(Coordinate::Force, telling_n);
     let features = features(setting, &coordinates);
-    let seen = Seen::of(track.instants.iter().zip(&track.counted).filter(|(_, counted)| **counted).map(|(at, _)| at));
+    let seen = track.seen();
     let every: Vec<&Feature> = features.iter().collect();
     let unnamed = remainder.structure(&every);
     let mut floor_square = best.held_out.mean_square();

@@ -3,7 +3,6 @@
 use pam_artifact::ModelArtifact;
 use pam_artifact::change::{Change, ChangeCandidate, ChangeConfig, ChangeFit, ChangeVerdict, Compared};
 use pam_identification::evaluate::{evaluate_augmented, noise_floor_n};
-use pam_muscle::effects::Seen;
 use pam_muscle::force::columns::ForceColumns;
 use pam_recording::Recording;
 
@@ -79,11 +78,10 @@ pub fn changes(request: Request) -> Result<Changes, DiagnoseError> {
     let columns = nuisances(then, &baseline.known, &track, baseline.floor_n);
     let rows = Rows::new(&track, &columns, baseline.floor_n.powi(2));
     let measured_n = track.instants.iter().map(|instant| instant.force_n).collect();
-    let counted = track.instants.iter().zip(&track.counted).filter(|(_, counted)| **counted);
     let bounds = Bounds {
         free: &baseline.known.free,
         n_then: then.terms.len(),
-        seen: Seen::of(counted.map(|(instant, _)| instant)),
+        seen: track.seen(),
         excluded: &config.excluded,
         most: config.max_changes,
         floor_n: baseline.floor_n,
