@@ -782,7 +782,7 @@ class Memory:
 
 
 class Muscle:
-    """A pam-model/1: eq. 11 with the effects beyond it, but for events."""
+    """A pam-model/1: eq. 11 with the effects beyond it, but for those of the fitted recordings alone."""
 
     def __init__(self, model):
         if model.get("schema") != "pam-model/1":
@@ -790,7 +790,7 @@ class Muscle:
         self.model, self.eq11 = model, Eq11(model)
         self.effects, self.empirical = [], []
         for entry in model["effects"]:
-            if entry["id"] in EVENTS:
+            if entry["id"] in EVENTS or entry.get("only_as_fitted"):
                 continue
             values = {parameter["name"]: parameter["value"] for parameter in entry["parameters"]}
             if entry["id"] == "empirical":

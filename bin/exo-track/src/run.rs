@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
 use pam_artifact::{Input, InputRole, InverseArtifact, ModelArtifact, Tool};
-use pam_cli::{Console, Output, OutputError, Verdict, pretty_json, publish, write_example};
+use pam_cli::{Console, Output, OutputError, Verdict, for_the_muscle, pretty_json, publish, write_example};
 use pam_exo::artifact::{ArmMetrics, MetricsArtifact, SCHEMA, TrialMetrics, is_the_papers, paper};
 use pam_exo::config::{LiftConfig, LiftPlan};
 use pam_exo::inverse::{ExactInverse, Inverse};
@@ -40,14 +40,14 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let (model, model_input) = read_model(model_path, InputRole::Model)?;
     let mut inputs = vec![config_input, model_input];
     let plant = args.plant.as_deref().map(|path| read_model(path, InputRole::Plant)).transpose()?;
-    let force = of_the_muscle(&console, model_path, &model);
+    let force = for_the_muscle(&model.augmented_model(), model_path, &console);
     let inverse = read_inverse(args, &plan, &force, &mut inputs)?;
     if let (Some(path), Some((artifact, _))) = (&args.plant, &plant) {
         note_plant(&console, [model_path, path], &model, artifact);
     }
     let plant_artifact = plant.as_ref().map_or(&model, |(artifact, _)| artifact);
     let plant_force = match (&args.plant, &plant) {
-        (Some(path), Some((artifact, _))) => of_the_muscle(&console, path, artifact),
+        (Some(path), Some((artifact, _))) => for_the_muscle(&artifact.augmented_model(), path, &console),
         _ => force.clone(),
     };
     inputs.extend(plant.iter().map(|(_, input)| input.clone()));
@@ -228,20 +228,6 @@ fn note_plant(console: &Console, [model_path, plant_path]: [&Path; 2], model: &M
         .collect();
     let muscle = if other.is_empty() { String::new() } else { format!(", of other dimensions ({})", other.join("; ")) };
     console.note(format!("the muscle of the lift is {plant_path}{muscle}; the controller knows {model_path}"));
-}
-
-/// The model of an artifact with the effects that a muscle takes along into a lift.
-fn of_the_muscle(console: &Console, path: &Path, artifact: &ModelArtifact) -> AugmentedModel {
-    let model = artifact.augmented_model();
-    let beside = model.beside_the_muscle();
-    if !beside.is_empty() {
-        console.note(format!(
-            "{}: left out of the lift, as they are not the muscle's: {}",
-            path.display(),
-            beside.join(", ")
-        ));
-    }
-    model.of_the_muscle()
 }
 
 /// Says which parameters the trials do not vary although the configuration asks for it.

@@ -11,7 +11,7 @@ use pam_deployment::vectors::{self, Vector};
 use pam_deployment::{c, mujoco, simulink};
 use pam_identification::predict::{prepare, prepare_plausible};
 use pam_inverse_model::InverseNetwork;
-use pam_muscle::effects::{AugmentedModel, Kind, Role};
+use pam_muscle::effects::{AugmentedModel, Role};
 use pam_recording::ReadOptions;
 
 use crate::args::Args;
@@ -72,23 +72,13 @@ fn of_file(input: &Input) -> String {
     format!("Written by pam-export {} from {path} (SHA-256 {}).", env!("CARGO_PKG_VERSION"), input.sha256)
 }
 
-/// The model with the effects that are wanted, without events.
+/// The model with the effects that are wanted.
 fn wanted(args: &Args, artifact: &ModelArtifact, console: &Console) -> AugmentedModel {
     let model = artifact.augmented_model();
     if args.muscle_only {
-        let beside = model.beside_the_muscle();
-        if !beside.is_empty() {
-            console.note(format!("left out, as they are not the muscle's: {}", beside.join(", ")));
-        }
-        return model.of_the_muscle();
+        return pam_cli::for_the_muscle(&model, &args.model, console);
     }
-    let events = model.terms().iter().filter(|term| term.effect.kind() == Kind::Event).count();
-    if events > 0 {
-        console.note(format!(
-            "{events} of the model's effects happened once, in a recording that it was diagnosed on, and are left out"
-        ));
-    }
-    model.elsewhere()
+    pam_cli::for_any_recording(&model, &args.model, console)
 }
 
 /// The export.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow, ensure};
 use pam_artifact::model::FitStatistics;
 use pam_artifact::{Input, InputRole, ModelArtifact, readable_json};
-use pam_cli::{Console, Output, OutputError, Verdict, publish};
+use pam_cli::{Output, OutputError, Verdict, for_any_recording, publish};
 use pam_identification::band::PredictiveBand;
 use pam_identification::evaluate::{NoForceAt, evaluate_augmented, noise_floor_n, without_force};
 use pam_identification::faults::{noise, reading, spikes, twice};
@@ -13,7 +13,7 @@ use pam_identification::predict::{augmented_forces_n, forces_n, outside, prepare
 use pam_identification::prediction::{Prediction, predict};
 use pam_identification::prepare::Prepared;
 use pam_identification::report::out_of_range;
-use pam_muscle::effects::{AugmentedModel, Kind};
+use pam_muscle::effects::AugmentedModel;
 use pam_recording::ReadOptions;
 use pam_report::PictureFormat;
 
@@ -58,7 +58,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     for words in outside(&prepared, &artifact.domain) {
         console.warn(words);
     }
-    let model = of_any_recording(&artifact, &console);
+    let model = for_any_recording(&artifact.augmented_model(), &args.model, &console);
     prepared.begin(model.base(), artifact.direction.standstill)?;
     // Before anything is written: a model that has no force for what was recorded leaves no file.
     let has_force = prepared.recording.samples.has_force();
@@ -156,18 +156,6 @@ fn followed(
 ) -> anyhow::Result<Prediction> {
     let band = PredictiveBand::of(artifact).map_err(|error| anyhow!("{}: {error}", path.display()))?;
     Ok(predict(prepared, model, artifact, &band, FIGURE_SAMPLES)?)
-}
-
-/// The model with all its effects but events, which belong to the recordings that it was diagnosed on.
-fn of_any_recording(artifact: &ModelArtifact, console: &Console) -> AugmentedModel {
-    let model = artifact.augmented_model();
-    let events = model.terms().iter().filter(|term| term.effect.kind() == Kind::Event).count();
-    if events > 0 {
-        console.note(format!(
-            "{events} of the model's effects happened once, in a recording that it was diagnosed on, and are left out"
-        ));
-    }
-    model.elsewhere()
 }
 
 /// Rows for which the model has no force.

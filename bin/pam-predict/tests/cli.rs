@@ -168,7 +168,16 @@ fn what_happened_once_is_left_out_and_a_delay_moves_a_channel() {
     bench.file("step.json", &with_effects(&[("force-step", &step)]));
     let output = bench.run("log.csv --model step.json --out -");
     assert!(output.stdout == bench.run("log.csv --model model.json --out -").stdout);
-    assert!(String::from_utf8(output.stderr).unwrap().contains("happened once"));
+    let left_out = |ids: &str| {
+        format!("left out, as they act only in the recordings that the model was fitted to: {ids}")
+    };
+    assert!(String::from_utf8(output.stderr).unwrap().contains(&left_out("force-step")));
+    let threshold = with_effects(&[("threshold-pressure", &[("threshold_pa", 4e4, "Pa")])]);
+    let id = "\"id\": \"threshold-pressure\"";
+    bench.file("fitted.json", &threshold.replace(id, &format!("{id}, \"only_as_fitted\": true")));
+    let fitted = bench.run("log.csv --model fitted.json --out -");
+    assert!(fitted.stdout == output.stdout);
+    assert!(String::from_utf8(fitted.stderr).unwrap().contains(&left_out("threshold-pressure")));
 
     // A pressure that rises evenly: 20 ms later it is 4 kPa higher.
     let rows: String =

@@ -25,10 +25,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let figure_out = args.figure.as_deref().filter(|_| !args.run.check).map(open_figure).transpose()?;
 
     let (model, sha256) = ModelArtifact::read(&args.model)?;
-    let beside = model.augmented_model().beside_the_muscle();
-    if !beside.is_empty() {
-        console.note(format!("left out, as they are not the muscle's: {}", beside.join(", ")));
-    }
+    pam_cli::for_the_muscle(&model.augmented_model(), &args.model, &console);
     let mut hashes = vec![Input { path: args.model.display().to_string(), sha256, role: InputRole::Model }];
     let read = args.read.resolve()?;
     hashes.extend(read.channels);

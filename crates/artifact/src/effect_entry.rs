@@ -22,9 +22,23 @@ pub struct EffectEntry {
     /// Its shape and its amplitudes, in SI, under the names and in the units of the catalogue; behind them what the muscle has
     /// been through, where the effect keeps that for good.
     pub parameters: Vec<ParameterEntry>,
+    /// Whether it acts in the recordings alone that the model was fitted to, since recordings that were held out are followed worse
+    /// with it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub only_as_fitted: bool,
 }
 
 impl EffectEntry {
+    /// Effect `id` of the catalogue with `parameters`, in every recording.
+    pub fn new(id: &str, parameters: Vec<ParameterEntry>) -> Self {
+        Self { id: id.to_owned(), sentence: None, parameters, only_as_fitted: false }
+    }
+
+    /// An empirical term with what `sentence` says and its amplitudes, in every recording.
+    pub fn empirical(sentence: Sentence, amplitudes: Vec<ParameterEntry>) -> Self {
+        Self { sentence: Some(sentence), ..Self::new(EMPIRICAL, amplitudes) }
+    }
+
     /// The effect without its values.
     fn effect(&self) -> Result<&'static dyn Effect, String> {
         match &self.sentence {
@@ -91,6 +105,7 @@ impl EffectEntry {
         }
         let after = values.split_off(effect.shape().len() + effect.amplitudes().len());
         let amplitudes = values.split_off(effect.shape().len());
-        Ok(Term { past: Past { after, ..Past::default() }, ..Term::new(effect, values, amplitudes) })
+        let past = Past { after, ..Past::default() };
+        Ok(Term { past, only_as_fitted: self.only_as_fitted, ..Term::new(effect, values, amplitudes) })
     }
 }

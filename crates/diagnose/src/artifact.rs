@@ -42,6 +42,8 @@ pub struct Agreement {
     pub holdout: Evaluation,
     /// The same without empirical terms; none where there are none.
     pub holdout_without_terms: Option<FitStatistics>,
+    /// The same with what is kept to the estimation recordings; none where nothing is.
+    pub holdout_everywhere: Option<FitStatistics>,
     /// What the noise of all channels leaves of a perfect model on the estimation recordings, in N.
     pub noise_floor_n: f64,
     /// Independent samples that the estimation recordings are worth.
@@ -66,6 +68,10 @@ impl Agreement {
             base_estimation: evaluate(estimation, base)?,
             base_holdout,
             holdout_without_terms,
+            holdout_everywhere: match &diagnosis.kept_to_fitted {
+                Some(kept) => evaluate_augmented(holdout, &kept.everywhere.elsewhere(), model.direction)?.together,
+                None => None,
+            },
             estimation: fitted,
             holdout: evaluate_augmented(holdout, &augmented.elsewhere(), model.direction)?,
             noise_floor_n: noise_floor_n(estimation, augmented.base())?,

@@ -3,13 +3,11 @@
 //! model carries no other forms of its effects and no reversals of its recordings: fitted beside them, base and effects may leave
 //! more than fitted without.
 
-use pam_identification::search_space::SearchSpace;
-use pam_muscle::effects::{AugmentedModel, Kind, Term};
-use pam_muscle::force::ForceModel;
+use pam_muscle::effects::{AugmentedModel, Kind};
 
 use crate::held_error::Left;
 use crate::hypothesis::CandidateEffect;
-use crate::nuisance::{self, Group, Nuisance};
+use crate::nuisance::{Group, Nuisance};
 use crate::search::Found;
 use crate::state::{Setting, State};
 use crate::track::Track;
@@ -72,18 +70,6 @@ pub(crate) fn let_go_of_what_models_nothing(setting: &Setting<'_>, found: &mut F
     true
 }
 
-/// The events of `found` with their sizes beside the base as `given`, where it has nothing but events; none otherwise. What is left
-/// elsewhere is then what the model as given leaves.
-pub(crate) fn events_beside(setting: &Setting<'_>, found: &Found, given: &ForceModel) -> Option<Vec<Term>> {
-    let guesses = &found.best.state.guesses;
-    if guesses.is_empty() || !guesses.iter().all(|guess| guess.effect.kind() == Kind::Event) {
-        return None;
-    }
-    let held = SearchSpace { free: Vec::new(), ranges: Vec::new(), held: *given.parameters(), ..setting.space.clone() };
-    let fixed = Setting { space: &held, nuisance: &nuisance::NONE, ..*setting };
-    Some(fixed.fit(guesses.clone(), &[], given)?.terms())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,21 +117,5 @@ mod tests {
         assert_eq!(names("channel-delay", &[0.06, 0.0], &[delay]), ["channel-delay"]);
         // Where it begins is not known.
         assert_eq!(names("thermal-softening", &[300.0], &[]), ["thermal-softening"]);
-    }
-
-    #[test]
-    fn events_beside_the_model_as_given_are_nothing_elsewhere() {
-        let step: (&'static str, &[f64], &[f64]) = ("force-step", &[0.0, 20.0], &[3.0]);
-        let fitted = Given::of(&["isobaric-triangles"], &[step]);
-        let limits = Limits::of_test(0, 0.3);
-        let plain = Setting { floor_square: 0.09, ..fitted.setting() };
-        let mut found = search(&plain, &fitted.start, &fitted.model, &limits, &|| {}).expect("a search");
-        assert!(events_beside(&plain, &found, &fitted.model).is_none());
-        let state = plain.fit_near(vec![fitted.guess("force-step", &[0.0, 20.0])], &found.best.state).expect("a fit");
-        found.best = judged(&plain, state).expect("a fit of every fold");
-        let terms = events_beside(&plain, &found, &fitted.model).expect("an event alone");
-        assert!((terms[0].amplitudes[0] - 3.0).abs() < 0.1, "{terms:?}");
-        let model = AugmentedModel::new(fitted.model.clone(), terms);
-        assert!(model.elsewhere().is_plain());
     }
 }

@@ -15,24 +15,23 @@ use crate::best_law::Recordings;
 use crate::carried;
 use crate::check;
 use crate::discover;
+use crate::elsewhere::KeptToFitted;
 use crate::error::DiagnoseError;
 use crate::given::Given;
 use crate::held_error::Left;
 use crate::isolability::isolability;
 use crate::knocks::{self, InertialTransient};
-use crate::named::{candidates, map_entry, named, term_entry};
+use crate::named::candidates;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
-use crate::own;
-use crate::places::{regions, structured, telling};
+use crate::places::regions;
 use crate::plausible::implausible;
-use crate::problem::{DiagnosisProblem, SearchOutcome};
+use crate::problem::DiagnosisProblem;
 use crate::rig;
 use crate::search::Limits;
-use crate::short;
-use crate::stand_ins;
+use crate::standing::{Standing, unexplained};
 use crate::uncertainty::{Uncertainty, correlated_instants};
-use crate::verdict::{Sizes, verdict};
-use crate::veto;
+use crate::verdict::Sizes;
+use crate::written::{Fit, Written};
 
 /// What to diagnose.
 #[derive(Debug)]
@@ -96,6 +95,8 @@ pub struct Diagnosis {
     pub base: ForceModel,
     /// Base model and effects.
     pub augmented: AugmentedModel,
+    /// What of it acts in the estimation recordings alone, since held-out ones are followed worse with it.
+    pub kept_to_fitted: Option<KeptToFitted>,
     /// Effects as a model artifact has them.
     pub entries: Vec<EffectEntry>,
     /// What is left of the fitted recording that the others foretell worst, root mean square in N; nothing where there is only one.
@@ -189,45 +190,18 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let outcome = recordings.under_best_law(&mut model, &limits, track, &advance)?;
     let Recordings { mut estimation, mut holdout, rig } = recordings;
     let question = DiagnosisProblem::new(&estimation, &model, limits);
-    let SearchOutcome { track, mut found, knocks, mut sizes } = outcome;
     let held = (!holdout.is_empty()).then(|| rig::track(&holdout, &model, &rig)).transpose()?;
     let held = held.map(|held| question.without_mistaken(&held));
-    if let Some(held) = held.as_ref().filter(|_| knocks.is_none()) {
-        found = veto::confirmed(&question, &track, found, held)?;
-        sizes = Sizes::of(&found, &question.limits);
-    }
-    let paths: Vec<String> = estimation.iter().map(|prepared| prepared.recording.path.clone()).collect();
+    let Standing { track, mut found, knocks, mut sizes, too_short } = Standing::of(&question, outcome, held.as_ref())?;
     let nuisance = found.nuisance.clone();
     let setting = question.setting(&track, &nuisance);
-    if knocks.is_none() && stand_ins::let_go_of_ends(&setting, &mut found) {
-        sizes = Sizes::of(&found, &question.limits);
-    }
-    let is_doubtful =
-        verdict(&found, &sizes, false) == Verdict::Unexplained || stand_ins::leaves_too_much(&found, &sizes);
-    if knocks.is_none() && is_doubtful {
-        let places = structured(&setting, &found.best.state, &found, &paths);
-        let left_over = telling(places, &[]).first().map(|region| region.coordinate);
-        sizes = stand_ins::let_go(&setting, &mut found, &sizes, &question.limits, left_over);
-    }
-    let lasts_s = estimation.iter().map(|prepared| prepared.quality.duration_s).sum();
-    let too_short = short::let_go(&setting, &mut found, &question.limits, lasts_s);
-    if !too_short.is_empty() && knocks.is_none() {
-        sizes = Sizes::of(&found, &question.limits);
-    }
-    if let Some(held) = held.as_ref().filter(|_| knocks.is_none())
-        && carried::let_go_of_what_models_nothing(&setting, &mut found, held)
-    {
-        sizes = Sizes::of(&found, &question.limits);
-    }
     let (as_given, direction) = (model.force_model(), model.direction);
     for prepared in &mut holdout {
         prepared.begin(&as_given, direction.standstill)?;
     }
     // At the rate of the recordings, as programs will evaluate what is written.
     let held_left = |model: &AugmentedModel| {
-        let terms = rig.iter().chain(model.terms()).cloned().collect();
-        Left::at_full_rate(&AugmentedModel::new(model.base().clone(), terms), &holdout, direction)
-            .unwrap_or_else(Left::endless)
+        Left::at_full_rate(&rig::beside(&rig, model), &holdout, direction).unwrap_or_else(Left::endless)
     };
     let against = held.as_ref().map(|_| discover::HeldAgainst { left: &held_left, given: &as_given });
     let space = &question.space;
@@ -253,30 +227,31 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
 
     let worst_foretold_n = whole.worst_foretold_n(state);
     let correlated = correlated_instants(&whole, &whole.residuals_n(state));
-    let sentences = own::sentences(&whole, state);
-    let (mut effects, mut entries) =
-        named(&whole, &found, state, &uncertainty, correlated, &sentences, knocks.as_ref());
-    let empirical = discovery.as_ref().map(|discovery| discovery.written(&whole, &found, &folds));
+    let fit = Fit {
+        setting: &whole,
+        state,
+        found: &found,
+        discovery: discovery.as_ref(),
+        knocks: knocks.as_ref(),
+        folds: &folds,
+        uncertainty: &uncertainty,
+        correlated,
+    };
+    let mut written = Written::of(&fit);
+    if let Some(held) = against {
+        written.settle(&fit, held);
+    }
     // Where nothing is named, terms are compared with the base model.
     let without_terms =
-        discovery.as_ref().filter(|_| !effects.is_empty()).map(|discovery| discovery.without_terms.clone());
-    entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
-    let mut regions = if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &paths) };
-    let mut terms = own::terms(state.terms(), &sentences);
-    if let Some(map) = nuisance.map_term(&state.fit.nuisances, &track, &found.coordinates) {
-        entries.push(map_entry(&map));
-        terms.push(map);
-    }
-    terms.extend(discovery.iter().flat_map(discover::Discovery::terms));
+        discovery.as_ref().filter(|_| !written.effects.is_empty()).map(|discovery| discovery.without_terms.clone());
+    let mut regions =
+        if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &question.paths()) };
     if let Some(knocks) = &knocks {
-        terms.push(knocks.term());
-        regions.insert(if effects[0].id == knocks::ID { 0 } else { regions.len() }, knocks.region(sizes.mismatch_n));
+        let at = if written.effects[0].id == knocks::ID { 0 } else { regions.len() };
+        regions.insert(at, knocks.region(sizes.mismatch_n));
     }
-    let unexplained = if verdict == Verdict::Unexplained {
-        telling(structured(&setting, &found.best.state, &found, &paths), &[])
-    } else {
-        Vec::new()
-    };
+    let unexplained =
+        if verdict == Verdict::Unexplained { unexplained(&question, &setting, &found) } else { Vec::new() };
     let isolability =
         isolability(&setting, &found.base.state, sizes.floor_n, track.n_counted() as f64 / correlated.max(1.0));
     // Where the mass that knocks is all there is to confirm.
@@ -288,21 +263,10 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
-    // Where nothing is written that acts elsewhere, the base stays as it was given unless what was held out is surely followed better
-    // by another one.
-    let events = carried::events_beside(&setting, &found, &as_given);
-    let stays = (effects.is_empty() || events.is_some()) && discovery.is_none() && knocks.is_none() && {
-        let refitted = AugmentedModel::new(state.model.clone(), terms.clone());
-        against.is_some_and(|against| !against.left_as_given().is_surely_bettered_by(&(against.left)(&refitted)))
-    };
-    let base = if stays { as_given.clone() } else { state.model.clone() };
-    if stays {
-        terms = events.unwrap_or_default();
-        entries.truncate(terms.len());
-        resized(&mut entries, &mut effects, &terms);
-    }
+    let augmented = rig::beside(&rig, &written.model());
+    let Written { mut entries, effects, empirical, kept, .. } = written;
+    let kept_to_fitted = kept.map(|kept| KeptToFitted { everywhere: rig::beside(&rig, &kept.everywhere), ..kept });
     entries.splice(0..0, rig.iter().map(rig::entry));
-    let augmented = AugmentedModel::new(base, rig.into_iter().chain(terms).collect());
     for prepared in estimation.iter_mut().chain(&mut holdout) {
         prepared.begin(augmented.base(), model.direction.standstill)?;
     }
@@ -326,6 +290,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         sizes,
         base: better_base(&estimation, &model, &found.base.state.model)?,
         augmented,
+        kept_to_fitted,
         entries,
         worst_foretold_n,
         uncertainty,
@@ -337,17 +302,6 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         config,
     };
     Ok(diagnosis)
-}
-
-/// Gives `entries`, and the `effects` of their ids, the sizes that `terms` have, in order.
-fn resized(entries: &mut [EffectEntry], effects: &mut [NamedEffect], terms: &[Term]) {
-    for (entry, term) in entries.iter_mut().zip(terms) {
-        let sizes = entry.parameters.iter_mut().skip(term.shape.len());
-        sizes.zip(&term.amplitudes).for_each(|(parameter, &size)| parameter.value = size);
-        for effect in effects.iter_mut().filter(|effect| effect.id == entry.id) {
-            effect.parameters.clone_from(&entry.parameters);
-        }
-    }
 }
 
 /// The base model that leaves less on the recordings at their full rate: as it was identified, if that was on these, or as

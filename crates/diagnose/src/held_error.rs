@@ -57,7 +57,7 @@ impl Left {
     }
 
     /// Of what is missed of every recording, in N, and whether that counts.
-    fn of_each(recordings: impl Iterator<Item = Vec<(f64, bool)>>) -> Self {
+    pub(crate) fn of_each(recordings: impl Iterator<Item = Vec<(f64, bool)>>) -> Self {
         let mut left = Self { each: Vec::new(), pieces: Vec::new(), counted: Vec::new() };
         let sum = |missed_n: &[(f64, bool)]| missed_n.iter().map(|missed| missed.0.powi(2)).sum::<f64>();
         for missed_n in recordings {

@@ -1,4 +1,4 @@
-//! InertialTransient: what a mass does to the load cell where a drive starts, stops or turns.
+//! Inertial transients: what a mass does to the load cell where a drive starts, stops or turns.
 //!
 //! They last some tens of milliseconds, much of that where the direction is not settled: the grid of a [`crate::track`]
 //! smooths them over or does not count them. So they are looked for in the samples as recorded, in what the model leaves
@@ -32,7 +32,7 @@ use line::{Knock, Line, Sums};
 /// Catalogue id of what knocks.
 pub const ID: &str = "inertia";
 
-/// InertialTransient that are needed.
+/// Transients that are needed.
 const LEAST_KNOCKS: usize = 8;
 /// The largest mass may be passed by so much as long as its size is not all that well known.
 const PASSED: f64 = 1.5;

@@ -2,7 +2,6 @@
 
 use pam_artifact::diagnosis::{Candidate, EmpiricalTerm, Evidence, NamedEffect};
 use pam_artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
-use pam_muscle::effects::sentence::EMPIRICAL;
 use pam_muscle::effects::{Sentence, Term};
 
 use crate::hypothesis::CandidateEffect;
@@ -24,13 +23,12 @@ pub(crate) fn map_entry(map: &Term) -> EffectEntry {
             let status = ParameterStatus::Fitted;
             ParameterEntry { name: name.to_owned(), value, unit: unit.to_owned(), stderr: None, status }
         });
-    EffectEntry { id: MAP_ID.to_owned(), sentence: None, parameters: parameters.collect() }
+    EffectEntry::new(MAP_ID, parameters.collect())
 }
 
 /// A term without a name as a model artifact has it.
 pub(crate) fn term_entry(term: &EmpiricalTerm) -> EffectEntry {
-    let (id, sentence) = (EMPIRICAL.to_owned(), Some(term.sentence.clone()));
-    EffectEntry { id, sentence, parameters: term.parameters.clone() }
+    EffectEntry::empirical(term.sentence.clone(), term.parameters.clone())
 }
 
 /// The mass behind `knocks`.
@@ -98,7 +96,7 @@ pub(crate) fn named(
             || evidence(&found.base.held_out, &found.best.held_out, found.first.len()),
             |taken| evidence(&taken.without, &taken.with, found.first.len()),
         );
-        let entry = EffectEntry { id: page.id.to_owned(), sentence: None, parameters: parameters.clone() };
+        let entry = EffectEntry::new(page.id, parameters.clone());
         list.push(own::entry(entry, &sentences[index], guess.shape.len()));
         named.push(NamedEffect {
             id: page.id.to_owned(),
@@ -111,7 +109,7 @@ pub(crate) fn named(
         });
     }
     if let Some(knocking) = knocks.map(knocking) {
-        list.push(EffectEntry { id: knocking.id.clone(), sentence: None, parameters: knocking.parameters.clone() });
+        list.push(EffectEntry::new(&knocking.id, knocking.parameters.clone()));
         named.push(knocking);
     }
     named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));

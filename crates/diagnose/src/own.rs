@@ -1,7 +1,7 @@
 //! Effects of a user's own, as a model carries them: the sentence with the numbers that were fitted, over the range that was seen.
 
 use pam_artifact::model::EffectEntry;
-use pam_muscle::effects::sentence::{Argument, EMPIRICAL, own};
+use pam_muscle::effects::sentence::{Argument, own};
 use pam_muscle::effects::{Sentence, Term};
 
 use crate::state::{Setting, State};
@@ -39,11 +39,9 @@ pub(crate) fn terms(terms: Vec<Term>, sentences: &[Option<Sentence>]) -> Vec<Ter
 /// `entry` of an effect with `n_shapes` as every program reads it, whichever effects that knows.
 pub(crate) fn entry(entry: EffectEntry, sentence: &Option<Sentence>, n_shapes: usize) -> EffectEntry {
     match sentence {
-        Some(sentence) => EffectEntry {
-            id: EMPIRICAL.to_owned(),
-            sentence: Some(sentence.clone()),
-            parameters: entry.parameters.into_iter().skip(n_shapes).collect(),
-        },
+        Some(sentence) => {
+            EffectEntry::empirical(sentence.clone(), entry.parameters.into_iter().skip(n_shapes).collect())
+        }
         None => entry,
     }
 }
@@ -54,7 +52,7 @@ mod tests {
     use crate::hypothesis::{Beginning, CandidateEffect, Sign};
     use crate::rehearsal::tests::Given;
 
-    use pam_muscle::effects::sentence::{Curve, custom_effects};
+    use pam_muscle::effects::sentence::{Curve, EMPIRICAL, custom_effects};
 
     #[test]
     fn a_model_carries_a_users_effect_with_its_fitted_numbers_where_the_recordings_went() {
@@ -80,7 +78,7 @@ mod tests {
         assert!((sentence.seen[1] - highest).abs() < 1e-12);
         let terms = terms(state.terms(), &sentences);
         assert_eq!((terms[0].effect.page().id, terms[0].shape.len(), terms[0].amplitudes.len()), (EMPIRICAL, 0, 1));
-        let written = EffectEntry { id: "touching-guard".to_owned(), sentence: None, parameters: Vec::new() };
+        let written = EffectEntry::new("touching-guard", Vec::new());
         assert_eq!(entry(written, &sentences[0], 1).sentence.as_ref(), sentences[0].as_ref());
     }
 }

@@ -57,6 +57,11 @@ impl<'a> DiagnosisProblem<'a> {
         Self { estimation, model, limits, space, columns, effects }
     }
 
+    /// Of the recordings, in order.
+    pub(crate) fn paths(&self) -> Vec<String> {
+        self.estimation.iter().map(|prepared| prepared.recording.path.clone()).collect()
+    }
+
     /// What fits to `track` share, beside `nuisance`.
     pub fn setting<'b>(&'b self, track: &'b Track, nuisance: &'b Nuisance) -> Setting<'b> {
         Setting {

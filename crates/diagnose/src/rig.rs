@@ -63,6 +63,11 @@ fn without(mut track: Track, rig: &[Term], base: &ForceModel) -> Track {
     track
 }
 
+/// `model` with what `rig` does on top of its base.
+pub(crate) fn beside(rig: &[Term], model: &AugmentedModel) -> AugmentedModel {
+    AugmentedModel::new(model.base().clone(), rig.iter().chain(model.terms()).cloned().collect())
+}
+
 /// `term` as a model artifact has it; its standard errors are those of the group that it was found in.
 pub(crate) fn entry(term: &Term) -> EffectEntry {
     let shapes = term.effect.shape().iter().map(|shape| (shape.name, shape.unit));
@@ -75,7 +80,7 @@ pub(crate) fn entry(term: &Term) -> EffectEntry {
         stderr: None,
         status: ParameterStatus::Fixed,
     });
-    EffectEntry { id: term.effect.page().id.to_owned(), sentence: None, parameters: parameters.collect() }
+    EffectEntry::new(term.effect.page().id, parameters.collect())
 }
 
 #[cfg(test)]

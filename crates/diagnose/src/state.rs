@@ -77,16 +77,11 @@ impl State {
     /// The effects with their values, as a model evaluates them.
     pub fn terms(&self) -> Vec<Term> {
         let mut values = self.fit.amplitudes.iter();
-        let term = |guess: &CandidateEffect| Term {
-            effect: guess.effect,
-            shape: guess.shape.clone(),
-            amplitudes: guess
-                .amplitudes()
-                .iter()
-                .zip(values.by_ref())
-                .map(|(amplitude, value)| value.clamp(amplitude.range.0, amplitude.range.1))
-                .collect(),
-            past: guess.beginning.past(),
+        let term = |guess: &CandidateEffect| {
+            let amplitudes = guess.amplitudes();
+            let pairs = amplitudes.iter().zip(values.by_ref());
+            let sizes = pairs.map(|(amplitude, value)| value.clamp(amplitude.range.0, amplitude.range.1)).collect();
+            Term { past: guess.beginning.past(), ..Term::new(guess.effect, guess.shape.clone(), sizes) }
         };
         self.guesses.iter().map(term).collect()
     }

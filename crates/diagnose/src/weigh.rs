@@ -7,6 +7,7 @@ use pam_identification::evaluate::Evaluation;
 use crate::artifact::{Agreement, together};
 use crate::diagnose::Diagnosis;
 use crate::discover;
+use crate::elsewhere::WORSE;
 use crate::error::DiagnoseError;
 use crate::nuisance::MAP_ID;
 use crate::{held, words};
@@ -16,13 +17,11 @@ use crate::{held, words};
 const FOLLOWED_WITHIN: f64 = 2.0;
 /// Times the sensors' noise that may be left of what is called explained.
 const EXPLAINED_WITHIN: f64 = 1.5;
-/// Times what the base model alone leaves of what was held out beyond which what is written follows that worse: more than rounding.
-const WORSE: f64 = 1.01;
 
 impl Diagnosis {
     /// Says the verdict in words and numbers, and lowers what is called explained to explained in part where, over all samples,
-    /// more is left than half as much again as the sensors leave, or where what was held out is followed worse than by the base
-    /// alone, and says so. The model as given and what was held out decide, too: where either is missed, nothing is consistent or
+    /// more is left than half as much again as the sensors leave, or where what was held out is followed worse with a name than
+    /// without, and says so. The model as given and what was held out decide, too: where either is missed, nothing is consistent or
     /// explained, and that is said first.
     ///
     /// # Errors
@@ -49,6 +48,15 @@ impl Diagnosis {
                 " Over all samples, reversals included, {left_n:.2} N are left, where noise leaves {:.2} N.",
                 numbers.floor_n
             ));
+        }
+        if let Some(kept) = &self.kept_to_fitted {
+            if self.verdict == Verdict::Explained && self.effects.iter().any(|named| kept.has(&named.id)) {
+                self.verdict = Verdict::ExplainedInPart;
+            }
+            let held = agreement.holdout_everywhere.as_ref().zip(agreement.holdout.together.as_ref());
+            if let Some((with, without)) = held {
+                self.statement += &kept.statement(with.rmse_all_n, without.rmse_all_n);
+            }
         }
         if let Some((before_n, after_n)) = self.raised(agreement) {
             if self.verdict == Verdict::Explained {

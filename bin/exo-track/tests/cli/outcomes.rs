@@ -55,7 +55,7 @@ fn an_effect_that_is_not_the_muscle_s_stays_at_the_bench() {
     let output = run(folder.path(), &["--out", "track.csv", "--plant", "effect.json"]);
     let text = String::from_utf8(output.stderr).unwrap();
     assert!(
-        text.contains("effect.json: left out of the lift, as they are not the muscle's: series-compliance"),
+        text.contains("effect.json: left out, as they are not the muscle's: series-compliance"),
         "{text}"
     );
 }

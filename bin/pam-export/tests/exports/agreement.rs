@@ -2,7 +2,7 @@
 
 use std::process::{Command, Output};
 
-use crate::desk::{Desk, cases, column, effects, has_c, model, python, touching_guard};
+use crate::desk::{Desk, cases, column, effects, has_c, kept_to_fitted, model, python, touching_guard};
 use pam_artifact::{InverseArtifact, ModelArtifact};
 use pam_inverse_model::InverseNetwork;
 use pam_muscle::effects::Effect;
@@ -214,6 +214,14 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
         ));
         logs.push((name.to_owned(), format!("{log}.csv")));
     }
+    // What acts in the fitted recordings alone is nowhere.
+    desk.write("fitted.json", &kept_to_fitted(&desk.read("presliding_hysteresis.json"), "presliding-hysteresis"));
+    desk.exported("multisine.csv --model fitted.json --vectors fitted.vectors.csv --quiet");
+    assert_eq!(
+        column(&desk.read("fitted.vectors.csv"), "force_model_n"),
+        column(&desk.read("plain.vectors.csv"), "force_model_n")
+    );
+    logs.push(("fitted".to_owned(), "multisine.csv".to_owned()));
     let lines: Vec<String> = logs.iter().map(|(name, log)| format!("{name} {log}")).collect();
     desk.write("cases.txt", &lines.join("\n"));
     let said = run_python(&desk, &python, include_str!("agreement.py"));

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::desk::{Desk, effects, model, python};
+use crate::desk::{Desk, effects, kept_to_fitted, model, python};
 use pam_artifact::ModelArtifact;
 
 /// The one error of a refused run, which leaves no file of those named `out`.
@@ -88,6 +88,20 @@ fn the_muscle_alone_has_no_instruments() {
     let header = String::from_utf8(output.stdout).unwrap();
     assert!(header.contains("MUSCLE_SLACK_FLOOR_N") && !header.contains("FORCE_DRIFT"));
     assert!(String::from_utf8(output.stderr).unwrap().contains("left out, as they are not the muscle's: force-drift"));
+}
+
+#[test]
+fn what_acts_in_the_fitted_recordings_alone_is_not_exported() {
+    let desk = desk();
+    let some: Vec<_> = effects().filter(|effect| ["slack", "pressure-creep"].contains(&effect.page().id)).collect();
+    desk.write("model.json", &kept_to_fitted(&model(&some), "slack"));
+    for option in ["", " --muscle-only"] {
+        let output = desk.export(&format!("--model model.json --c -{option}"));
+        let header = String::from_utf8(output.stdout).unwrap();
+        assert!(!header.contains("MUSCLE_SLACK_FLOOR_N") && header.contains("MUSCLE_PRESSURE_CREEP"));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains("left out, as they act only in the recordings that the model was fitted to: slack"), "{said}");
+    }
 }
 
 /// Values in the brackets after `name = `, in a MATLAB script.

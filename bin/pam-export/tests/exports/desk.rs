@@ -161,6 +161,13 @@ pub(crate) fn model(effects: &[&dyn Effect]) -> String {
         .replace("\"effects\": []", &format!("\"effects\": [{}]", entries.join(", ")))
 }
 
+/// A model whose effect `id` acts in the recordings alone that it was fitted to.
+pub(crate) fn kept_to_fitted(model: &str, id: &str) -> String {
+    let id = format!("\"id\": \"{id}\"");
+    assert!(model.contains(&id), "{id}");
+    model.replace(&id, &format!("{id}, \"only_as_fitted\": true"))
+}
+
 /// An effect with parameters inside their ranges: shapes from the middle of the grid, amplitudes of a size that shows; with a past
 /// that what it keeps for good begins with, or without.
 fn entry(effect: &dyn Effect, has_past: bool) -> String {

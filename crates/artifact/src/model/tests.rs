@@ -11,7 +11,7 @@ fn parameter(name: &str, value: f64, unit: &str) -> ParameterEntry {
 }
 
 fn effect(id: &str, parameters: Vec<ParameterEntry>) -> EffectEntry {
-    EffectEntry { id: id.to_owned(), sentence: None, parameters }
+    EffectEntry::new(id, parameters)
 }
 
 fn artifact(effects: Vec<EffectEntry>) -> ModelArtifact {
@@ -101,9 +101,15 @@ fn effects_come_on_top_of_eq_11() {
 
 #[test]
 fn an_artifact_survives_its_own_text_with_effects() {
-    let artifact = artifact(vec![rubber(7.0)]);
-    let text = serde_json::to_string(&artifact).expect("an artifact is JSON");
-    assert_eq!(serde_json::from_str::<ModelArtifact>(&text).expect("its own text"), artifact);
+    let mut artifact = artifact(vec![rubber(7.0)]);
+    let text = |artifact: &ModelArtifact| serde_json::to_string(artifact).expect("an artifact is JSON");
+    let everywhere = text(&artifact);
+    assert_eq!(serde_json::from_str::<ModelArtifact>(&everywhere).expect("its own text"), artifact);
+    assert!(!everywhere.contains("only_as_fitted"), "an effect acts in every recording unless it is said");
+    artifact.effects[0].only_as_fitted = true;
+    let read: ModelArtifact = serde_json::from_str(&text(&artifact)).expect("its own text");
+    assert_eq!(read, artifact);
+    assert_eq!(read.augmented_model().not_elsewhere(), ["rubber-hysteresis"]);
 }
 
 #[test]

@@ -3,7 +3,9 @@ use super::*;
 use std::sync::OnceLock;
 
 use pam_artifact::diagnosis::NamedEffect;
+use pam_artifact::model::FitStatistics;
 
+use crate::elsewhere::KeptToFitted;
 use crate::given::tests::{STROKES, artifact, diagnosed, recorded};
 use crate::joint::HeldOut;
 
@@ -123,6 +125,24 @@ fn what_raises_the_error_of_what_was_held_out_is_explained_in_part_and_the_state
 }
 
 #[test]
+fn a_name_that_is_kept_to_the_fitted_recordings_explains_in_part_and_a_map_takes_nothing_away() {
+    let kept = |id| {
+        weighed(|found, agreement| {
+            found.verdict = Verdict::Explained;
+            found.effects.push(lag());
+            found.kept_to_fitted = Some(KeptToFitted { ids: vec![id], everywhere: found.augmented.clone() });
+            base_leaves(agreement, 1.0);
+            let with = FitStatistics { rmse_all_n: 6.22, ..agreement.holdout.together.expect("a hold-out") };
+            agreement.holdout_everywhere = Some(with);
+        })
+    };
+    let lag = kept("pressure-lag");
+    assert_eq!(lag.verdict, Verdict::ExplainedInPart);
+    assert!(lag.statement.contains("6.22 N are left of them with it"), "{}", lag.statement);
+    assert_eq!(kept(MAP_ID).verdict, Verdict::Explained);
+}
+
+#[test]
 fn a_model_that_is_missed_as_given_is_never_consistent_nor_explained() {
     let missed = |verdict| {
         weighed(|found, agreement| {
@@ -151,7 +171,7 @@ fn a_static_map_is_seen_among_what_is_written() {
     assert!(with_map.has_map());
     let with_another = weighed(|found, _| {
         let lag =
-            pam_artifact::model::EffectEntry { id: "pressure-lag".to_owned(), sentence: None, parameters: Vec::new() };
+            pam_artifact::model::EffectEntry::new("pressure-lag", Vec::new());
         found.entries.push(lag);
     });
     assert!(!with_another.has_map());

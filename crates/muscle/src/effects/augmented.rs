@@ -27,6 +27,8 @@ pub struct Term {
     pub amplitudes: Vec<f64>,
     /// History of the muscle.
     pub past: Past,
+    /// Whether it acts in the recordings alone that the model was fitted to.
+    pub only_as_fitted: bool,
 }
 
 /// History of a muscle before a recording, as [`Effect::keeps`] lists it; nothing by default.
@@ -48,7 +50,17 @@ impl Past {
 impl Term {
     /// `effect` in a muscle that has been through nothing.
     pub fn new(effect: &'static dyn Effect, shape: Vec<f64>, amplitudes: Vec<f64>) -> Self {
-        Self { effect, shape, amplitudes, past: Past::default() }
+        Self { effect, shape, amplitudes, past: Past::default(), only_as_fitted: false }
+    }
+
+    /// Whether it acts in other recordings than those that the model was fitted to: events happened once.
+    pub fn acts_elsewhere(&self) -> bool {
+        self.effect.kind() != Kind::Event && !self.only_as_fitted
+    }
+
+    /// Whether it is of the muscle rather than of its instruments and fixture, or of one recording.
+    pub fn is_of_the_muscle(&self) -> bool {
+        self.effect.kind() == Kind::Muscle
     }
 }
 
@@ -189,28 +201,44 @@ impl AugmentedModel {
         delays.fold([0.0; 2], |sum, delays| [sum[0] + delays[0], sum[1] + delays[1]])
     }
 
-    /// The same muscle without instruments, fixture and events.
+    /// The same muscle without instruments, fixture, events and what acts in the fitted recordings alone.
     pub fn of_the_muscle(&self) -> Self {
-        self.with(|kind| kind == Kind::Muscle)
+        self.with(|term| term.is_of_the_muscle() && term.acts_elsewhere())
     }
 
-    /// Ids of what [`of_the_muscle`](Self::of_the_muscle) leaves out.
+    /// Ids of instruments, fixture and events.
     pub fn beside_the_muscle(&self) -> Vec<&'static str> {
-        let beside = self.terms.iter().filter(|term| term.effect.kind() != Kind::Muscle);
-        beside.map(|term| term.effect.page().id).collect()
+        self.without(Term::is_of_the_muscle)
     }
 
-    /// The same for other recordings than those it was fitted to: without events, which happened once, and after all that the
-    /// muscle was through in them.
+    /// The same for other recordings than those it was fitted to: without what acts in these alone, and after all that the muscle was
+    /// through in them.
     pub fn elsewhere(&self) -> Self {
-        let mut other = self.with(|kind| kind != Kind::Event);
+        let mut other = self.with(Term::acts_elsewhere);
         other.terms.iter_mut().for_each(|term| term.past.began.clear());
         other
     }
 
-    fn with(&self, wanted: impl Fn(Kind) -> bool) -> Self {
-        let terms = self.terms.iter().filter(|term| wanted(term.effect.kind())).cloned().collect();
+    /// Lets term `index` act in the recordings alone that the model was fitted to.
+    ///
+    /// # Panics
+    /// Where there is no such term.
+    pub fn keep_to_fitted(&mut self, index: usize) {
+        self.terms[index].only_as_fitted = true;
+    }
+
+    /// Ids of what [`elsewhere`](Self::elsewhere) leaves out.
+    pub fn not_elsewhere(&self) -> Vec<&'static str> {
+        self.without(Term::acts_elsewhere)
+    }
+
+    fn with(&self, wanted: impl Fn(&Term) -> bool) -> Self {
+        let terms = self.terms.iter().filter(|term| wanted(term)).cloned().collect();
         Self::new(self.base.clone(), terms)
+    }
+
+    fn without(&self, wanted: impl Fn(&Term) -> bool) -> Vec<&'static str> {
+        self.terms.iter().filter(|term| !wanted(term)).map(|term| term.effect.page().id).collect()
     }
 }
 

@@ -147,3 +147,21 @@ fn a_muscle_leaves_instruments_and_fixture_behind() {
     assert_eq!(model.beside_the_muscle(), ["force-drift", "force-step"]);
     assert_eq!(model.elsewhere().terms().len(), 3);
 }
+
+#[test]
+fn what_is_kept_to_the_fitted_recordings_acts_there_and_nowhere_else() {
+    let terms = vec![term("viscous-damping", &[], &[1e4, 0.0]), term("slack", &[0.0, 0.0], &[])];
+    let mut model = AugmentedModel::new(base(), terms);
+    assert!(model.not_elsewhere().is_empty());
+    model.keep_to_fitted(0);
+    assert_eq!(model.not_elsewhere(), ["viscous-damping"]);
+    assert!(model.beside_the_muscle().is_empty());
+    let fast = Moment { speed_m_per_s: 1e-2, ..Moment::settled(&nominal(), 3e5, 0.24, 1.0) };
+    let force_n = |model: &AugmentedModel| model.start_in(0).force_n(model, fast);
+    let plain_n = base().force_n(3e5, 0.24, 1.0);
+    assert!((force_n(&model) - plain_n).abs() > 50.0);
+    for other in [model.elsewhere(), model.of_the_muscle()] {
+        assert_eq!(other.terms().len(), 1);
+        assert!((force_n(&other) - plain_n).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,78 @@
+//! Which of the names that the search took stand: what was held out is asked, and what stands in for something else, or needs
+//! longer recordings, or models nothing, is let go of.
+
+use pam_artifact::diagnosis::{Region, Verdict};
+
+use crate::carried;
+use crate::error::DiagnoseError;
+use crate::knocks::InertialTransient;
+use crate::places::{structured, telling};
+use crate::problem::{DiagnosisProblem, SearchOutcome};
+use crate::search::Found;
+use crate::short;
+use crate::stand_ins;
+use crate::state::Setting;
+use crate::track::Track;
+use crate::verdict::{Sizes, verdict};
+use crate::veto;
+
+/// What stands of what was found.
+#[derive(Debug)]
+pub(crate) struct Standing {
+    /// The recordings, as they were searched.
+    pub(crate) track: Track,
+    /// What was found, without what was let go of.
+    pub(crate) found: Found,
+    /// A mass that knocks; beside it nothing is let go of, as it has sizes of its own.
+    pub(crate) knocks: Option<InertialTransient>,
+    /// Sizes that a verdict rests on.
+    pub(crate) sizes: Sizes,
+    /// What recordings were too short for, in words.
+    pub(crate) too_short: Vec<String>,
+}
+
+impl Standing {
+    /// What stands of `outcome`, where `held` is what was held out.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit.
+    pub(crate) fn of(
+        question: &DiagnosisProblem<'_>,
+        outcome: SearchOutcome,
+        held: Option<&Track>,
+    ) -> Result<Self, DiagnoseError> {
+        let SearchOutcome { track, mut found, knocks, mut sizes } = outcome;
+        let limits = &question.limits;
+        let lasts_s = question.estimation.iter().map(|prepared| prepared.quality.duration_s).sum();
+        if knocks.is_some() {
+            let nuisance = found.nuisance.clone();
+            let too_short = short::let_go(&question.setting(&track, &nuisance), &mut found, limits, lasts_s);
+            return Ok(Self { track, found, knocks, sizes, too_short });
+        }
+        if let Some(held) = held {
+            found = veto::confirmed(question, &track, found, held)?;
+            sizes = Sizes::of(&found, limits);
+        }
+        let nuisance = found.nuisance.clone();
+        let setting = question.setting(&track, &nuisance);
+        if stand_ins::let_go_of_ends(&setting, &mut found) {
+            sizes = Sizes::of(&found, limits);
+        }
+        if verdict(&found, &sizes, false) == Verdict::Unexplained || stand_ins::leaves_too_much(&found, &sizes) {
+            let left_over = unexplained(question, &setting, &found).first().map(|region| region.coordinate);
+            sizes = stand_ins::let_go(&setting, &mut found, &sizes, limits, left_over);
+        }
+        let too_short = short::let_go(&setting, &mut found, limits, lasts_s);
+        let models_nothing =
+            held.is_some_and(|held| carried::let_go_of_what_models_nothing(&setting, &mut found, held));
+        if !too_short.is_empty() || models_nothing {
+            sizes = Sizes::of(&found, limits);
+        }
+        Ok(Self { track, found, knocks, sizes, too_short })
+    }
+}
+
+/// Where what `found` leaves is structured.
+pub(crate) fn unexplained(question: &DiagnosisProblem<'_>, setting: &Setting<'_>, found: &Found) -> Vec<Region> {
+    telling(structured(setting, &found.best.state, found, &question.paths()), &[])
+}

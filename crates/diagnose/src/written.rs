@@ -1,0 +1,155 @@
+//! The model as it is written: on which base, with which terms, and where these act.
+
+use pam_artifact::diagnosis::{Empirical, NamedEffect};
+use pam_artifact::model::EffectEntry;
+use pam_identification::search_space::SearchSpace;
+use pam_muscle::effects::sentence::Sentence;
+use pam_muscle::effects::{AugmentedModel, Kind, Term};
+use pam_muscle::force::ForceModel;
+
+use crate::discover::{Discovery, HeldAgainst};
+use crate::elsewhere::{KeptToFitted, is_worse, keep_to_fitted};
+use crate::joint::JointFit;
+use crate::knocks::InertialTransient;
+use crate::named::{map_entry, named, term_entry};
+use crate::nuisance;
+use crate::own;
+use crate::search::Found;
+use crate::state::{Setting, State};
+use crate::uncertainty::Uncertainty;
+
+/// What a model is written from.
+pub(crate) struct Fit<'a> {
+    /// What the state was fitted in.
+    pub(crate) setting: &'a Setting<'a>,
+    /// Base and names.
+    pub(crate) state: &'a State,
+    /// What the search found.
+    pub(crate) found: &'a Found,
+    /// Terms without a name beside it.
+    pub(crate) discovery: Option<&'a Discovery>,
+    /// A mass that knocks.
+    pub(crate) knocks: Option<&'a InertialTransient>,
+    /// The same fit with each fold left out.
+    pub(crate) folds: &'a [JointFit],
+    /// Standard errors.
+    pub(crate) uncertainty: &'a Uncertainty,
+    /// Instants of the residual that stand for one.
+    pub(crate) correlated: f64,
+}
+
+impl Fit<'_> {
+    /// The names with their sizes beside `base` as it is; none where there is more than names and a static map, or the samples do not
+    /// determine them.
+    fn names_beside(&self, base: &ForceModel, sentences: &[Option<Sentence>]) -> Option<Vec<Term>> {
+        let guesses = &self.state.guesses;
+        if self.discovery.is_some() || self.knocks.is_some() {
+            return None;
+        }
+        if guesses.is_empty() {
+            return Some(Vec::new());
+        }
+        let space = self.setting.space.clone();
+        let held = SearchSpace { free: Vec::new(), ranges: Vec::new(), held: *base.parameters(), ..space };
+        let fixed = Setting { space: &held, nuisance: &nuisance::NONE, ..*self.setting };
+        Some(own::terms(fixed.fit(guesses.clone(), &[], base)?.terms(), sentences))
+    }
+}
+
+/// A model on its way into a file; what the rig is known to do comes on top of it.
+#[derive(Debug)]
+pub(crate) struct Written {
+    /// Eq. 11.
+    pub(crate) base: ForceModel,
+    /// What comes on top of it: the names first.
+    pub(crate) terms: Vec<Term>,
+    /// The same as a model artifact has it: the names first, in the order of the terms.
+    pub(crate) entries: Vec<EffectEntry>,
+    /// The names, in order of evidence.
+    pub(crate) effects: Vec<NamedEffect>,
+    /// Terms without a name.
+    pub(crate) empirical: Option<Empirical>,
+    /// What acts in the fitted recordings alone.
+    pub(crate) kept: Option<KeptToFitted>,
+    /// Sentences of a user's own effects among the names.
+    sentences: Vec<Option<Sentence>>,
+}
+
+impl Written {
+    /// All that was fitted, in every recording.
+    pub(crate) fn of(fit: &Fit<'_>) -> Self {
+        let Fit { setting, state, found, discovery, knocks, folds, .. } = *fit;
+        let sentences = own::sentences(setting, state);
+        let (effects, mut entries) =
+            named(setting, found, state, fit.uncertainty, fit.correlated, &sentences, knocks);
+        let mut terms = own::terms(state.terms(), &sentences);
+        let empirical = discovery.map(|discovery| discovery.written(setting, found, folds));
+        entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
+        if let Some(map) = setting.nuisance.map_term(&state.fit.nuisances, setting.track, &found.coordinates) {
+            entries.push(map_entry(&map));
+            terms.push(map);
+        }
+        terms.extend(discovery.iter().flat_map(|discovery| discovery.terms()));
+        terms.extend(knocks.map(InertialTransient::term));
+        Self { base: state.model.clone(), terms, entries, effects, empirical, kept: None, sentences }
+    }
+
+    /// Settles its base, and where its terms act, by what was `held` out.
+    ///
+    /// The base stays as it was given where nothing that is written acts elsewhere, unless held-out recordings are surely followed
+    /// better by the refitted one. Names that these are followed worse with are kept to the fitted recordings; where the refitted base
+    /// leaves more there than the one as given, all of them, on that one.
+    pub(crate) fn settle(&mut self, fit: &Fit<'_>, held: HeldAgainst<'_>) {
+        let everywhere = self.model();
+        if fit.state.guesses.iter().all(|guess| guess.effect.kind() == Kind::Event)
+            && let Some(events) = fit.names_beside(held.given, &self.sentences)
+            && !held.left_as_given().is_surely_bettered_by(&(held.left)(&everywhere))
+        {
+            return self.put_on(held.given, events);
+        }
+        if self.effects.is_empty() {
+            return;
+        }
+        let given = AugmentedModel::from(held.given.clone());
+        let mut model = everywhere.clone();
+        let mut ids = keep_to_fitted(&mut model, &given, held.left);
+        let beside_given = is_worse(&model, &given, held.left).then(|| fit.names_beside(held.given, &self.sentences));
+        match beside_given.flatten() {
+            Some(mut terms) => {
+                ids.clear();
+                for term in terms.iter_mut().filter(|term| term.acts_elsewhere()) {
+                    term.only_as_fitted = true;
+                    ids.push(term.effect.page().id);
+                }
+                self.put_on(held.given, terms);
+            }
+            None => self.terms = model.terms().to_vec(),
+        }
+        if !ids.is_empty() {
+            let kept = KeptToFitted { ids, everywhere };
+            self.entries.iter_mut().for_each(|entry| entry.only_as_fitted = kept.has(&entry.id));
+            self.kept = Some(kept);
+        }
+    }
+
+    /// All of it.
+    pub(crate) fn model(&self) -> AugmentedModel {
+        AugmentedModel::new(self.base.clone(), self.terms.clone())
+    }
+
+    /// Puts `terms`, the names and nothing else, on `base`, and gives entries and names their sizes.
+    fn put_on(&mut self, base: &ForceModel, terms: Vec<Term>) {
+        self.entries.truncate(terms.len());
+        for (entry, term) in self.entries.iter_mut().zip(&terms) {
+            let sizes = entry.parameters.iter_mut().skip(term.shape.len());
+            sizes.zip(&term.amplitudes).for_each(|(parameter, &size)| parameter.value = size);
+            for effect in self.effects.iter_mut().filter(|effect| effect.id == entry.id) {
+                effect.parameters.clone_from(&entry.parameters);
+            }
+        }
+        (self.base, self.terms) = (base.clone(), terms);
+    }
+}
+
+#[cfg(test)]
+mod tests;
