@@ -168,9 +168,8 @@ fn what_happened_once_is_left_out_and_a_delay_moves_a_channel() {
     bench.file("step.json", &with_effects(&[("force-step", &step)]));
     let output = bench.run("log.csv --model step.json --out -");
     assert!(output.stdout == bench.run("log.csv --model model.json --out -").stdout);
-    let left_out = |ids: &str| {
-        format!("left out, as they act only in the recordings that the model was fitted to: {ids}")
-    };
+    let left_out =
+        |ids: &str| format!("left out, as they act only in the recordings that the model was fitted to: {ids}");
     assert!(String::from_utf8(output.stderr).unwrap().contains(&left_out("force-step")));
     let threshold = with_effects(&[("threshold-pressure", &[("threshold_pa", 4e4, "Pa")])]);
     let id = "\"id\": \"threshold-pressure\"";

@@ -3,8 +3,9 @@
 //! model carries no other forms of its effects and no reversals of its recordings: fitted beside them, base and effects may leave
 //! more than fitted without.
 
-use pam_muscle::effects::{AugmentedModel, Kind};
+use pam_muscle::effects::{AugmentedModel, Effect, Kind};
 
+use crate::elsewhere;
 use crate::held_error::Left;
 use crate::hypothesis::CandidateEffect;
 use crate::nuisance::{Group, Nuisance};
@@ -16,6 +17,10 @@ use crate::track::Track;
 pub(crate) const OF_THE_FIT: [Group; 2] = [Group::Reversal, Group::Form];
 /// What it carries only where that helps.
 const MAP: [Group; 2] = [Group::EvenMap, Group::OddMap];
+
+/// Share of what is left of the fitted recordings, over all samples and beyond the sensors, that a name must take away with which others
+/// are followed worse.
+const LEAST_SHARE: f64 = 0.15;
 
 /// What was found in `setting`, fitted as a model carries it, and what is then in beside it: what leaves least of the force of
 /// `held` over all samples. Without `held` the recordings of the fit judge, which cannot tell whether a map foretells anything.
@@ -70,9 +75,51 @@ pub(crate) fn let_go_of_what_models_nothing(setting: &Setting<'_>, found: &mut F
     true
 }
 
+/// Lets go of names of `found` that model next to nothing, the least first: with them `held` is followed worse than without, and they
+/// take away less than [`LEAST_SHARE`] of what is left of the recordings that they were fitted to. Whether it let go of any.
+pub(crate) fn let_go_of_what_is_followed_worse(setting: &Setting<'_>, found: &mut Found, held: &Track) -> bool {
+    let mut any = false;
+    loop {
+        let best = &found.best.state;
+        let with = modelled(setting, found, best);
+        // An event is nothing elsewhere, where a static effect acts others may not have been, and where what outlasts a recording begins
+        // in others is not known.
+        let is_judged = |effect: &dyn Effect| effect.kind() != Kind::Event && !effect.is_static() && !effect.outlasts();
+        let judged = (0..best.guesses.len()).filter(|&index| is_judged(best.guesses[index].effect));
+        let shares = judged.filter_map(|index| {
+            let without = modelled(setting, found, &setting.fit_without(best, index)?);
+            let is_worse = elsewhere::is_worse(&with, &without, &|model| Left::of(model, held));
+            let [before, after] = [&without, &with].map(|model| mean_square(setting.track, model));
+            let share = (before - after) / (before - setting.floor_square).max(f64::MIN_POSITIVE);
+            (is_worse && share < LEAST_SHARE).then_some((index, share))
+        });
+        let Some((index, _)) = shares.min_by(|one, other| one.1.total_cmp(&other.1)) else { return any };
+        let id = found.best.state.guesses[index].id();
+        if !found.let_go(setting, index) {
+            return any;
+        }
+        found.denied.push(id);
+        found.stand_ins.push(id);
+        any = true;
+    }
+}
+
+/// The model of `state`, fitted beside all that `found` has, with its map.
+fn modelled(setting: &Setting<'_>, found: &Found, state: &State) -> AugmentedModel {
+    carried(setting, found, state, &found.nuisance)
+}
+
+/// Mean square of what `model` leaves of all instants of the recordings that it was fitted to, in N².
+fn mean_square(track: &Track, model: &AugmentedModel) -> f64 {
+    let modelled_n = track.modelled_n(model);
+    let missed = track.instants.iter().zip(&modelled_n).map(|(instant, modelled_n)| instant.force_n - modelled_n);
+    missed.map(|missed_n| missed_n * missed_n).sum::<f64>() / track.n().max(1) as f64
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::nuisance;
     use crate::rehearsal::tests::Given;
     use crate::search::{Limits, judged, search};
 
@@ -96,6 +143,32 @@ mod tests {
         };
         assert!(has_map(6.0).is_some());
         assert!(has_map(0.0).is_none());
+    }
+
+    #[test]
+    fn a_name_that_others_are_followed_worse_with_is_let_go_of_where_it_explains_little_of_the_fitted() {
+        // Damping in the fitted recordings and in the others, beside so much that eq. 11 misses.
+        let names = |fitted_n_s_per_m: f64, others_n_s_per_m: f64, missed_n: f64| {
+            let [fitted, held] = [("isobaric-triangles", fitted_n_s_per_m), ("multisine", others_n_s_per_m)].map(
+                |(protocol, damping)| {
+                    let mut given = Given::of(&[protocol], &[("viscous-damping", &[], &[damping, 0.0])]);
+                    given.bend(missed_n);
+                    given
+                },
+            );
+            let plain = Setting { floor_square: 0.09, ..fitted.setting() };
+            let mut found =
+                search(&plain, &fitted.start, &fitted.model, &Limits::of_test(0, 0.3), &|| {}).expect("a search");
+            found.nuisance = nuisance::NONE.clone();
+            let state = plain.fit_near(vec![fitted.guess("viscous-damping", &[])], &found.best.state);
+            found.best = judged(&plain, state.expect("a fit")).expect("a fit of every fold");
+            let did = let_go_of_what_is_followed_worse(&plain, &mut found, &held.track);
+            assert_eq!(did, !found.stand_ins.is_empty());
+            found.best.state.guesses.iter().map(|guess| guess.id()).collect::<Vec<_>>()
+        };
+        assert_eq!(names(100.0, -3000.0, 60.0), Vec::<&str>::new());
+        assert_eq!(names(100.0, 100.0, 60.0), ["viscous-damping"], "the others have it as well");
+        assert_eq!(names(3000.0, -3000.0, 0.0), ["viscous-damping"], "it explains the fitted ones");
     }
 
     #[test]

@@ -30,8 +30,9 @@ impl KeptToFitted {
     /// What a person should know of it, where `with_n` are left of what was held out with the effects and `without_n` without, over
     /// all samples, in N.
     pub(crate) fn statement(&self, with_n: f64, without_n: f64) -> String {
+        let them = if self.ids.len() > 1 { "them" } else { "it" };
         format!(
-            " Held-out recordings are followed worse with {}: over all samples {with_n:.2} N are left of them with it, {without_n:.2} N \
+            " Held-out recordings are followed worse with {}: over all samples {with_n:.2} N are left with {them}, {without_n:.2} N \
              without. The finding rests on the fitted recordings alone, and the model applies it to no others.",
             self.ids.join(" and ")
         )
@@ -135,8 +136,13 @@ mod tests {
 
     #[test]
     fn a_person_is_told_what_it_would_cost() {
-        let said = KeptToFitted { ids: vec!["pressure-creep", "force-drift"], everywhere: with(&[]) }.statement(6.22, 3.04);
-        assert!(said.contains("worse with pressure-creep and force-drift: over all samples 6.22 N are left"), "{said}");
-        assert!(said.contains("3.04 N without"), "{said}");
+        let said =
+            KeptToFitted { ids: vec!["pressure-creep", "force-drift"], everywhere: with(&[]) }.statement(6.22, 3.04);
+        assert!(
+            said.contains(
+                "worse with pressure-creep and force-drift: over all samples 6.22 N are left with them, 3.04 N without"
+            ),
+            "{said}"
+        );
     }
 }

@@ -65,7 +65,9 @@ impl Standing {
         let too_short = short::let_go(&setting, &mut found, limits, lasts_s);
         let models_nothing =
             held.is_some_and(|held| carried::let_go_of_what_models_nothing(&setting, &mut found, held));
-        if !too_short.is_empty() || models_nothing {
+        let is_followed_worse =
+            held.is_some_and(|held| carried::let_go_of_what_is_followed_worse(&setting, &mut found, held));
+        if !too_short.is_empty() || models_nothing || is_followed_worse {
             sizes = Sizes::of(&found, limits);
         }
         Ok(Self { track, found, knocks, sizes, too_short })

@@ -16,7 +16,7 @@ use crate::nuisance;
 use crate::own;
 use crate::search::Found;
 use crate::state::{Setting, State};
-use crate::uncertainty::Uncertainty;
+use crate::uncertainty::{self, Uncertainty};
 
 /// What a model is written from.
 pub(crate) struct Fit<'a> {
@@ -80,8 +80,7 @@ impl Written {
     pub(crate) fn of(fit: &Fit<'_>) -> Self {
         let Fit { setting, state, found, discovery, knocks, folds, .. } = *fit;
         let sentences = own::sentences(setting, state);
-        let (effects, mut entries) =
-            named(setting, found, state, fit.uncertainty, fit.correlated, &sentences, knocks);
+        let (effects, mut entries) = named(setting, found, state, fit.uncertainty, fit.correlated, &sentences, knocks);
         let mut terms = own::terms(state.terms(), &sentences);
         let empirical = discovery.map(|discovery| discovery.written(setting, found, folds));
         entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
@@ -141,8 +140,11 @@ impl Written {
     fn put_on(&mut self, base: &ForceModel, terms: Vec<Term>) {
         self.entries.truncate(terms.len());
         for (entry, term) in self.entries.iter_mut().zip(&terms) {
+            let ranges = term.effect.amplitudes().iter().map(|amplitude| amplitude.range);
             let sizes = entry.parameters.iter_mut().skip(term.shape.len());
-            sizes.zip(&term.amplitudes).for_each(|(parameter, &size)| parameter.value = size);
+            for (parameter, (&size, range)) in sizes.zip(term.amplitudes.iter().zip(ranges)) {
+                *parameter = uncertainty::entry(&parameter.name, &parameter.unit, size, range, parameter.stderr);
+            }
             for effect in self.effects.iter_mut().filter(|effect| effect.id == entry.id) {
                 effect.parameters.clone_from(&entry.parameters);
             }

@@ -54,10 +54,7 @@ fn an_effect_that_is_not_the_muscle_s_stays_at_the_bench() {
     assert_eq!(mae_rad(folder.path(), &["--plant", "effect.json"]).to_bits(), base_rad.to_bits());
     let output = run(folder.path(), &["--out", "track.csv", "--plant", "effect.json"]);
     let text = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        text.contains("effect.json: left out, as they are not the muscle's: series-compliance"),
-        "{text}"
-    );
+    assert!(text.contains("effect.json: left out, as they are not the muscle's: series-compliance"), "{text}");
 }
 
 #[test]

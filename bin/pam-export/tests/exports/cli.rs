@@ -100,7 +100,10 @@ fn what_acts_in_the_fitted_recordings_alone_is_not_exported() {
         let header = String::from_utf8(output.stdout).unwrap();
         assert!(!header.contains("MUSCLE_SLACK_FLOOR_N") && header.contains("MUSCLE_PRESSURE_CREEP"));
         let said = String::from_utf8(output.stderr).unwrap();
-        assert!(said.contains("left out, as they act only in the recordings that the model was fitted to: slack"), "{said}");
+        assert!(
+            said.contains("left out, as they act only in the recordings that the model was fitted to: slack"),
+            "{said}"
+        );
     }
 }
 

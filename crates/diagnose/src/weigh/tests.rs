@@ -138,7 +138,7 @@ fn a_name_that_is_kept_to_the_fitted_recordings_explains_in_part_and_a_map_takes
     };
     let lag = kept("pressure-lag");
     assert_eq!(lag.verdict, Verdict::ExplainedInPart);
-    assert!(lag.statement.contains("6.22 N are left of them with it"), "{}", lag.statement);
+    assert!(lag.statement.contains("6.22 N are left with it"), "{}", lag.statement);
     assert_eq!(kept(MAP_ID).verdict, Verdict::Explained);
 }
 
@@ -170,8 +170,7 @@ fn a_static_map_is_seen_among_what_is_written() {
     });
     assert!(with_map.has_map());
     let with_another = weighed(|found, _| {
-        let lag =
-            pam_artifact::model::EffectEntry::new("pressure-lag", Vec::new());
+        let lag = pam_artifact::model::EffectEntry::new("pressure-lag", Vec::new());
         found.entries.push(lag);
     });
     assert!(!with_another.has_map());
