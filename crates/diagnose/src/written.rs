@@ -116,19 +116,20 @@ impl Written {
         match beside_given.flatten() {
             Some(mut terms) => {
                 ids.clear();
-                for term in terms.iter_mut().filter(|term| term.acts_elsewhere()) {
+                for (term, guess) in terms.iter_mut().zip(&fit.state.guesses).filter(|(term, _)| term.acts_elsewhere())
+                {
                     term.only_as_fitted = true;
-                    ids.push(term.effect.page().id);
+                    // A user's own effect is written without its name.
+                    ids.push(guess.id());
                 }
                 self.put_on(held.given, terms);
             }
-            None => self.terms = model.terms().to_vec(),
+            None => {
+                self.terms = model.terms().to_vec();
+                self.entries.iter_mut().for_each(|entry| entry.only_as_fitted = ids.contains(&entry.id.as_str()));
+            }
         }
-        if !ids.is_empty() {
-            let kept = KeptToFitted { ids, everywhere };
-            self.entries.iter_mut().for_each(|entry| entry.only_as_fitted = kept.has(&entry.id));
-            self.kept = Some(kept);
-        }
+        self.kept = (!ids.is_empty()).then_some(KeptToFitted { ids, everywhere });
     }
 
     /// All of it.
@@ -140,6 +141,7 @@ impl Written {
     fn put_on(&mut self, base: &ForceModel, terms: Vec<Term>) {
         self.entries.truncate(terms.len());
         for (entry, term) in self.entries.iter_mut().zip(&terms) {
+            entry.only_as_fitted = term.only_as_fitted;
             let ranges = term.effect.amplitudes().iter().map(|amplitude| amplitude.range);
             let sizes = entry.parameters.iter_mut().skip(term.shape.len());
             for (parameter, (&size, range)) in sizes.zip(term.amplitudes.iter().zip(ranges)) {
