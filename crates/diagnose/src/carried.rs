@@ -5,7 +5,6 @@
 
 use pam_muscle::effects::{AugmentedModel, Effect, Kind};
 
-use crate::elsewhere;
 use crate::held_error::Left;
 use crate::hypothesis::CandidateEffect;
 use crate::nuisance::{Group, Nuisance};
@@ -81,14 +80,15 @@ pub(crate) fn let_go_of_what_is_followed_worse(setting: &Setting<'_>, found: &mu
     let mut any = false;
     loop {
         let best = &found.best.state;
-        let with = modelled(setting, found, best);
+        let with = carried(setting, found, best, &found.nuisance);
+        let held_with = Left::of(&with, held);
         // An event is nothing elsewhere, where a static effect acts others may not have been, and where what outlasts a recording begins
         // in others is not known.
         let is_judged = |effect: &dyn Effect| effect.kind() != Kind::Event && !effect.is_static() && !effect.outlasts();
         let judged = (0..best.guesses.len()).filter(|&index| is_judged(best.guesses[index].effect));
         let shares = judged.filter_map(|index| {
-            let without = modelled(setting, found, &setting.fit_without(best, index)?);
-            let is_worse = elsewhere::is_worse(&with, &without, &|model| Left::of(model, held));
+            let without = carried(setting, found, &setting.fit_without(best, index)?, &found.nuisance);
+            let is_worse = held_with.is_worse_than(&Left::of(&without, held));
             let [before, after] = [&without, &with].map(|model| mean_square(setting.track, model));
             let share = (before - after) / (before - setting.floor_square).max(f64::MIN_POSITIVE);
             (is_worse && share < LEAST_SHARE).then_some((index, share))
@@ -102,11 +102,6 @@ pub(crate) fn let_go_of_what_is_followed_worse(setting: &Setting<'_>, found: &mu
         found.stand_ins.push(id);
         any = true;
     }
-}
-
-/// The model of `state`, fitted beside all that `found` has, with its map.
-fn modelled(setting: &Setting<'_>, found: &Found, state: &State) -> AugmentedModel {
-    carried(setting, found, state, &found.nuisance)
 }
 
 /// Mean square of what `model` leaves of all instants of the recordings that it was fitted to, in N².

@@ -9,6 +9,8 @@ use crate::track::Track;
 
 /// Share of the error (mean square over all instants) of held-out recordings that a term must take away to be written.
 const LEAST_GAIN: f64 = 0.05;
+/// Times what is left without something beyond which held-out recordings are followed worse with it: more than rounding.
+pub(crate) const WORSE: f64 = 1.01;
 /// Times the error, root mean square, to which it may raise that of one held-out recording.
 const MOST_HARM: f64 = 1.05;
 /// Pieces that a recording is cut into, which stand for independent ones.
@@ -80,6 +82,11 @@ impl Left {
         f64::sqrt(squares / f64::max(count, 1.0))
     }
 
+    /// Whether it is more than `base` leaves, by more than rounding.
+    pub(crate) fn is_worse_than(&self, base: &Self) -> bool {
+        self.together_n() > WORSE * base.together_n()
+    }
+
     /// Whether the held-out recordings confirm what leaves `with` of them.
     pub(crate) fn is_bettered_by(&self, with: &Self) -> bool {
         !self.is_harmed_by(with) && with.together_n().powi(2) < (1.0 - LEAST_GAIN) * self.together_n().powi(2)
@@ -120,6 +127,15 @@ mod tests {
         assert!(!left([4.0, 1.0]).is_bettered_by(&left([2.0, 1.2])));
         assert!(!left([4.0, 1.0]).is_bettered_by(&left([3.95, 1.0])));
         assert!((left([3.0, 4.0]).together_n() - 12.5_f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_leaves_more_than_rounding_more_is_worse() {
+        let left = |left_n: f64| Left::of_each(std::iter::once(vec![(left_n, true); 80]));
+        let base = left(10.0);
+        assert!(
+            left(10.2).is_worse_than(&base) && !left(10.05).is_worse_than(&base) && !left(9.8).is_worse_than(&base)
+        );
     }
 
     #[test]

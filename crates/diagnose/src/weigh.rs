@@ -7,8 +7,8 @@ use pam_identification::evaluate::Evaluation;
 use crate::artifact::{Agreement, together};
 use crate::diagnose::Diagnosis;
 use crate::discover;
-use crate::elsewhere::WORSE;
 use crate::error::DiagnoseError;
+use crate::held_error::WORSE;
 use crate::nuisance::MAP_ID;
 use crate::{held, words};
 

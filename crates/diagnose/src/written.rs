@@ -8,7 +8,7 @@ use pam_muscle::effects::{AugmentedModel, Kind, Term};
 use pam_muscle::force::ForceModel;
 
 use crate::discover::{Discovery, HeldAgainst};
-use crate::elsewhere::{KeptToFitted, is_worse, keep_to_fitted};
+use crate::elsewhere::{KeptToFitted, keep_to_fitted};
 use crate::joint::JointFit;
 use crate::knocks::InertialTransient;
 use crate::named::{map_entry, named, term_entry};
@@ -111,8 +111,8 @@ impl Written {
         }
         let given = AugmentedModel::from(held.given.clone());
         let mut model = everywhere.clone();
-        let mut ids = keep_to_fitted(&mut model, &given, held.left);
-        let beside_given = is_worse(&model, &given, held.left).then(|| fit.names_beside(held.given, &self.sentences));
+        let (mut ids, is_worse) = keep_to_fitted(&mut model, &given, held.left);
+        let beside_given = is_worse.then(|| fit.names_beside(held.given, &self.sentences));
         match beside_given.flatten() {
             Some(mut terms) => {
                 ids.clear();
