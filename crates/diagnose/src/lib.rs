@@ -7,6 +7,7 @@
 pub mod artifact;
 pub mod base;
 mod best_law;
+mod borne_out;
 mod carried;
 mod check;
 pub mod coordinates;

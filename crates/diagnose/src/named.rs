@@ -68,6 +68,15 @@ pub(crate) fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evide
     }
 }
 
+/// Evidence for effect `index` of `found` within what was fitted, beside the others.
+pub(crate) fn evidence_of(found: &Found, index: usize) -> Evidence {
+    let (without, with) = match found.taken.get(index) {
+        Some(taken) => (&taken.without, &taken.with),
+        None => (&found.base.held_out, &found.best.held_out),
+    };
+    evidence(without, with, found.first.len())
+}
+
 /// The effects that were taken and the mass behind `knocks`, in order of evidence, and in that in which a model has them;
 /// `correlated` instants of the residual stand for one; `state` is what was found, with terms without a name beside it.
 pub(crate) fn named(
@@ -92,10 +101,7 @@ pub(crate) fn named(
             .iter()
             .find_map(|id| page.confused_with.iter().find(|confusion| confusion.id == *id))
             .map_or(page.test, |confusion| confusion.test);
-        let evidence = found.taken.get(index).map_or_else(
-            || evidence(&found.base.held_out, &found.best.held_out, found.first.len()),
-            |taken| evidence(&taken.without, &taken.with, found.first.len()),
-        );
+        let evidence = evidence_of(found, index);
         let entry = EffectEntry::new(page.id, parameters.clone());
         list.push(own::entry(entry, &sentences[index], guess.shape.len()));
         named.push(NamedEffect {
@@ -133,6 +139,8 @@ pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
                 "cannot be distinguished from one named".to_owned()
             } else if found.denied.contains(&id) {
                 "held-out recordings deny it".to_owned()
+            } else if found.by_chance.contains(&id) {
+                "chance may have given it".to_owned()
             } else if found.stand_ins.contains(&id) {
                 "gains something, and leaves far more than it explains".to_owned()
             } else if found.replaced.contains(&id) {

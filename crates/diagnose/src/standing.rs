@@ -3,7 +3,7 @@
 
 use pam_artifact::diagnosis::{Region, Verdict};
 
-use crate::carried;
+use crate::borne_out;
 use crate::error::DiagnoseError;
 use crate::knocks::InertialTransient;
 use crate::places::{structured, telling};
@@ -63,11 +63,8 @@ impl Standing {
             sizes = stand_ins::let_go(&setting, &mut found, &sizes, limits, left_over);
         }
         let too_short = short::let_go(&setting, &mut found, limits, lasts_s);
-        let models_nothing =
-            held.is_some_and(|held| carried::let_go_of_what_models_nothing(&setting, &mut found, held));
-        let is_followed_worse =
-            held.is_some_and(|held| carried::let_go_of_what_is_followed_worse(&setting, &mut found, held));
-        if !too_short.is_empty() || models_nothing || is_followed_worse {
+        let is_not_borne_out = held.is_some_and(|held| borne_out::let_go_of_others(&setting, &mut found, held));
+        if !too_short.is_empty() || is_not_borne_out {
             sizes = Sizes::of(&found, limits);
         }
         Ok(Self { track, found, knocks, sizes, too_short })
@@ -77,4 +74,45 @@ impl Standing {
 /// Where what `found` leaves is structured.
 pub(crate) fn unexplained(question: &DiagnosisProblem<'_>, setting: &Setting<'_>, found: &Found) -> Vec<Region> {
     telling(structured(setting, &found.best.state, found, &question.paths()), &[])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::given::tests::{RAMPS, STROKES, artifact, recorded};
+    use crate::hypothesis::{Beginning, CandidateEffect};
+    use crate::rig;
+    use crate::search::{Limits, judged};
+
+    use pam_muscle::effects::effect;
+
+    #[test]
+    fn a_name_that_the_recordings_do_not_show_stands_only_where_nothing_is_held_out() {
+        let model = artifact();
+        let [fitted, held] = [("strokes.csv", STROKES), ("ramps.csv", RAMPS)].map(|(name, path)| {
+            let prepared = [recorded(name, path, &model, 1.0)];
+            let track = rig::track(&prepared, &model, &[]).expect("a track");
+            (prepared, track)
+        });
+        let question = DiagnosisProblem::new(&fitted.0, &model, Limits::of_test(0, 0.3));
+        let names = |held: Option<&Track>| {
+            let mut outcome = question.answer(&fitted.1, &|| {}).expect("a search");
+            let nuisance = outcome.found.nuisance.clone();
+            let setting = question.setting(&outcome.track, &nuisance);
+            let effect = effect("viscous-damping").expect("an id");
+            let damping = CandidateEffect {
+                effect,
+                shape: Vec::new(),
+                sign: CandidateEffect::signs(effect)[0],
+                beginning: Beginning::Fresh,
+            };
+            let state = setting.fit_near(vec![damping], &outcome.found.best.state).expect("a fit");
+            outcome.found.best = judged(&setting, state).expect("a fit of every fold");
+            let standing = Standing::of(&question, outcome, held).expect("a decision");
+            assert_eq!(standing.sizes, Sizes::of(&standing.found, &question.limits));
+            standing.found.best.state.guesses.iter().map(CandidateEffect::id).collect::<Vec<_>>()
+        };
+        assert_eq!(names(None), ["viscous-damping"]);
+        assert_eq!(names(Some(&held.1)), Vec::<&str>::new());
+    }
 }

@@ -96,6 +96,8 @@ pub struct Found {
     pub of_the_map: Vec<&'static str>,
     /// Ids of what was taken and let go of again, as recordings that nothing was fitted to do not show it.
     pub denied: Vec<&'static str>,
+    /// Ids of what was taken and let go of again, as chance may have given it.
+    pub by_chance: Vec<&'static str>,
 }
 
 impl Found {
@@ -250,6 +252,7 @@ pub fn search(
         replaced: Vec::new(),
         of_the_map: parsimonious,
         denied: Vec::new(),
+        by_chance: Vec::new(),
     })
 }
 
