@@ -108,6 +108,7 @@ mod tests {
             };
             let state = setting.fit_near(vec![damping], &outcome.found.best.state).expect("a fit");
             outcome.found.best = judged(&setting, state).expect("a fit of every fold");
+            outcome.sizes = Sizes::of(&outcome.found, &question.limits);
             let standing = Standing::of(&question, outcome, held).expect("a decision");
             assert_eq!(standing.sizes, Sizes::of(&standing.found, &question.limits));
             standing.found.best.state.guesses.iter().map(CandidateEffect::id).collect::<Vec<_>>()
