@@ -63,7 +63,7 @@ fn fitted<'a>(
 }
 
 /// The model of `state` with what it carries of `nuisance`.
-fn carried(setting: &Setting<'_>, found: &Found, state: &State, nuisance: &Nuisance) -> AugmentedModel {
+pub(crate) fn carried(setting: &Setting<'_>, found: &Found, state: &State, nuisance: &Nuisance) -> AugmentedModel {
     let map = nuisance.map_term(&state.fit.nuisances, setting.track, &found.coordinates);
     AugmentedModel::new(state.model.clone(), state.terms().into_iter().chain(map).collect())
 }
