@@ -37,11 +37,12 @@ pub(crate) fn let_go_of_others(setting: &Setting<'_>, found: &mut Found, held: &
     let mut any = false;
     loop {
         let guesses = &found.best.state.guesses;
-        let with = least(setting, found, held, guesses);
         let not_borne_out = (0..guesses.len()).filter_map(|index| {
             let mut others = guesses.clone();
             let effect = others.remove(index).effect;
-            let without = least(setting, found, held, &others);
+            // In the place of a static effect the map would do as well.
+            let left = |guesses: &[CandidateEffect]| least(setting, found, held, guesses, !effect.is_static());
+            let (without, with) = (left(&others), left(guesses));
             let shown = Shown {
                 share: share(without, with, setting.floor_square),
                 own: own_square(setting, found, held, index)? / beyond(without[0], setting.floor_square),
@@ -106,13 +107,13 @@ fn own_square(setting: &Setting<'_>, found: &Found, held: &Track, index: usize) 
 }
 
 /// Mean squares of what a model with `guesses` leaves of `track`, in N²: over all instants, and over the counted ones, each beside those
-/// of the nuisances with which it leaves least.
-fn least(setting: &Setting<'_>, found: &Found, track: &Track, guesses: &[CandidateEffect]) -> [f64; 2] {
+/// of the nuisances with which it leaves least, the static map among them `by_map` alone.
+fn least(setting: &Setting<'_>, found: &Found, track: &Track, guesses: &[CandidateEffect], by_map: bool) -> [f64; 2] {
     let least_of = |least: [f64; 2], model| {
         let left = mean_squares(track, &model);
         [least[0].min(left[0]), least[1].min(left[1])]
     };
-    carried::models(setting, found, guesses).fold([f64::INFINITY; 2], least_of)
+    carried::models(setting, found, guesses, by_map).fold([f64::INFINITY; 2], least_of)
 }
 
 /// Share of what is left `before`, mean squares in N² beyond `floor_square`, that is no longer left `after`: over all instants or the

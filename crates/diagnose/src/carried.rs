@@ -16,6 +16,8 @@ use crate::track::Track;
 pub(crate) const OF_THE_FIT: [Group; 2] = [Group::Reversal, Group::Form];
 /// What it carries only where that helps.
 const MAP: [Group; 2] = [Group::EvenMap, Group::OddMap];
+/// Both.
+const OF_ALL: [Group; 4] = [Group::Reversal, Group::Form, Group::EvenMap, Group::OddMap];
 
 /// What was found in `setting`, fitted as a model carries it, and what is then in beside it: what leaves least of the force of
 /// `held` over all samples. Without `held` the recordings of the fit judge, which cannot tell whether a map foretells anything.
@@ -26,40 +28,42 @@ pub(crate) fn leaves_least(setting: &Setting<'_>, found: &Found, held: Option<&T
     let left_n = |state: &State, nuisance: &Nuisance| {
         Left::of(&carried(setting, found, state, nuisance), held.unwrap_or(setting.track)).together_n()
     };
-    let fitted = fitted(setting, found, &best.guesses, held.is_some());
-    let fitted = fitted.map(|(state, nuisance)| (left_n(&state, &nuisance), state, nuisance));
-    let least = fitted.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let fewer: [&[Group]; 3] = [&OF_THE_FIT, &MAP, &OF_ALL];
+    let others = fewer.into_iter().take(if held.is_some() { 3 } else { 1 });
+    let others = others.filter(|groups| found.nuisance.without(groups).n() < found.nuisance.n());
+    let others = others.filter_map(|groups| fitted(setting, found, &best.guesses, groups));
+    let least = others
+        .map(|(state, nuisance)| (left_n(&state, &nuisance), state, nuisance))
+        .min_by(|one, other| one.0.total_cmp(&other.0))?;
     (least.0 < left_n(best, &found.nuisance)).then_some((least.1, least.2))
 }
 
-/// Models of `guesses` beside the base, as they would be written: each beside others of the nuisances that were in.
+/// Models of `guesses` beside the base, as they would be written: each beside others of the nuisances that were in; the static map is among
+/// them `by_map` alone.
 pub(crate) fn models<'a>(
     setting: &'a Setting<'_>,
     found: &'a Found,
     guesses: &'a [CandidateEffect],
+    by_map: bool,
 ) -> impl Iterator<Item = AugmentedModel> {
-    let as_it_was = setting.fit_near(guesses.to_vec(), &found.best.state);
-    let as_it_was = as_it_was.map(|state| (state, found.nuisance.clone()));
-    let every = as_it_was.into_iter().chain(fitted(setting, found, guesses, true));
-    every.map(|(state, nuisance)| carried(setting, found, &state, &nuisance))
+    let every: &[&[Group]] = if by_map { &[&[], &OF_THE_FIT, &MAP, &OF_ALL] } else { &[&MAP, &OF_ALL] };
+    let of = move |groups: &[Group]| {
+        let (state, nuisance) = fitted(setting, found, guesses, groups)?;
+        Some(carried(setting, found, &state, &nuisance))
+    };
+    every.iter().copied().filter_map(of)
 }
 
-/// `guesses` fitted beside fewer of the nuisances that were in: without what no model carries and, `by_map`, without the static map.
-fn fitted<'a>(
-    setting: &'a Setting<'_>,
-    found: &'a Found,
-    guesses: &'a [CandidateEffect],
-    by_map: bool,
-) -> impl Iterator<Item = (State, Nuisance)> {
-    let without = |groups: &[Group]| found.nuisance.without(groups);
-    let mut others = vec![without(&OF_THE_FIT)];
-    if by_map {
-        others.extend([without(&MAP), without(&[OF_THE_FIT, MAP].concat())]);
-    }
-    others.into_iter().filter(|nuisance| nuisance.n() < found.nuisance.n()).filter_map(|nuisance| {
-        let state = setting.beside(&nuisance).fit_near(guesses.to_vec(), &found.best.state)?;
-        Some((state, nuisance))
-    })
+/// `guesses` fitted beside the nuisances that were in, without `groups`.
+fn fitted(
+    setting: &Setting<'_>,
+    found: &Found,
+    guesses: &[CandidateEffect],
+    groups: &[Group],
+) -> Option<(State, Nuisance)> {
+    let nuisance = found.nuisance.without(groups);
+    let state = setting.beside(&nuisance).fit_near(guesses.to_vec(), &found.best.state)?;
+    Some((state, nuisance))
 }
 
 /// The model of `state` with what it carries of `nuisance`.
