@@ -1,4 +1,5 @@
-//! Which names are borne out: by recordings that nothing was fitted to or, where these cannot tell, by the fitted ones far beyond chance.
+//! Which names are borne out: by recordings that nothing was fitted to or, where these cannot tell, by the fitted ones far beyond
+//! chance.
 //!
 //! A name that foretells nothing is no physics that was missing, whatever it gained where it was fitted: what is left of something else
 //! and resembles it gains there, too.
@@ -12,14 +13,15 @@ use crate::search::Found;
 use crate::state::Setting;
 use crate::track::Track;
 
-/// Share of what is left of held-out recordings beyond the sensors, mean square, that a name must take away to be borne out by them; less
-/// than that of a force of its own, and they cannot tell. Of 180 names that were looked at, 104 of them right, 97 right and 34 wrong ones stand; with
-/// half of it 99 and 36, with its double 96 and 30.
+/// Share of what is left of held-out recordings beyond the sensors, mean square, that a name must take away to be borne out by them; where
+/// its own force is less than that, they cannot tell. Of 180 names that were looked at, 104 of them right, 97 right and 34 wrong ones
+/// stand; with half of it 99 and 36, with its double 96 and 30.
 const LEAST_SHARE: f64 = 0.2;
 /// Probability of as much evidence within what was fitted by chance, corrected for multiple comparisons, from which on it is none, whatever
 /// held-out recordings say. With half of it 96 right and 32 wrong ones stand, without it 98 and 42.
 const AS_LIKELY: f64 = 0.5;
-/// The same from which on what held-out recordings cannot tell does not stand on it. With half of it 97 and 34 stand, with its double 97 and 36.
+/// The same from which on what held-out recordings cannot tell does not stand on it. With half of it 97 and 34 stand, with its double 97
+/// and 36.
 const UNLIKELY: f64 = 0.01;
 
 /// What speaks against a name.
@@ -84,8 +86,8 @@ impl Shown {
         }
     }
 
-    /// What `effect` must take away at least. What happened once did not happen there, and where what outlasts a recording begins in them is
-    /// not known; where a static effect acts they may not have been, and what has next to no force there may be there.
+    /// What `effect` must take away at least. What happened once did not happen there, and where what outlasts a recording begins in them
+    /// is not known; where a static effect acts they may not have been, and what has next to no force there may be there.
     fn least_share(self, effect: &dyn Effect) -> f64 {
         if effect.kind() == Kind::Event || effect.outlasts() {
             f64::NEG_INFINITY
@@ -123,9 +125,9 @@ fn share(before: [f64; 2], after: [f64; 2], floor_square: f64) -> f64 {
     share(0).max(share(1))
 }
 
-/// What is `left` beyond `floor_square`, in N²; never nothing.
+/// What is `left` beyond `floor_square`, in N², and as much as that at least: shares of less would be shares of the noise.
 fn beyond(left: f64, floor_square: f64) -> f64 {
-    (left - floor_square).max(f64::MIN_POSITIVE)
+    (left - floor_square).max(floor_square)
 }
 
 /// Mean squares of what `model` leaves, in N²: over all instants with a force, and over the counted ones.
@@ -182,6 +184,7 @@ mod tests {
     fn a_share_is_of_what_lies_beyond_the_sensors_and_over_the_samples_that_show_more() {
         assert!((share([5.0, 3.0], [3.0, 2.9], 1.0) - 0.5).abs() < 1e-12);
         assert!((share([5.0, 3.0], [4.9, 2.0], 1.0) - 0.5).abs() < 1e-12);
+        assert!((share([1.1, 1.1], [1.0, 1.0], 1.0) - 0.1).abs() < 1e-12, "within the noise");
     }
 
     /// Names that stay, and those that held-out recordings deny, of a muscle with so much damping in the fitted recordings and in the
