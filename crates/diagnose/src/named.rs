@@ -64,7 +64,7 @@ pub(crate) fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evide
         rmse_with_n: with.mean_square().sqrt(),
         blocks_improved: improved,
         n_blocks: without.blocks.len(),
-        p_value: (chance(without, with) * looks as f64).min(1.0),
+        p_value: (chance(without, with) * looks.max(1) as f64).min(1.0),
     }
 }
 
