@@ -7,6 +7,7 @@
 use pam_muscle::effects::{AugmentedModel, Effect, Kind};
 
 use crate::carried;
+use crate::held_error::Left;
 use crate::hypothesis::CandidateEffect;
 use crate::named::evidence_of;
 use crate::search::Found;
@@ -15,7 +16,7 @@ use crate::track::Track;
 
 /// Share of what is left of held-out recordings beyond the sensors, mean square, that a name must take away to be borne out by them; where
 /// its own force is less than that, they cannot tell. Of 180 names that were looked at, 104 of them right, 97 right and 34 wrong ones
-/// stand; with half of it 99 and 36, with its double 96 and 30.
+/// stand (counted over shares of the first form of the rule); with half of it 99 and 36, with its double 96 and 30.
 const LEAST_SHARE: f64 = 0.2;
 /// Probability of as much evidence within what was fitted by chance, corrected for multiple comparisons, from which on it is none, whatever
 /// held-out recordings say. With half of it 96 right and 32 wrong ones stand, without it 98 and 42.
@@ -108,11 +109,11 @@ fn own_square(setting: &Setting<'_>, found: &Found, held: &Track, index: usize) 
     Some(squares.sum::<f64>() / held.n().max(1) as f64)
 }
 
-/// Mean squares of what a model with `guesses` leaves of `track`, in N²: over all instants, and over the counted ones, each beside those
+/// Mean squares of what a model with `guesses` leaves of `held`, in N²: over all instants, and over the counted ones, each beside those
 /// of the nuisances with which it leaves least, the static map among them `by_map` alone.
-fn least(setting: &Setting<'_>, found: &Found, track: &Track, guesses: &[CandidateEffect], by_map: bool) -> [f64; 2] {
-    let least_of = |least: [f64; 2], model| {
-        let left = mean_squares(track, &model);
+fn least(setting: &Setting<'_>, found: &Found, held: &Track, guesses: &[CandidateEffect], by_map: bool) -> [f64; 2] {
+    let least_of = |least: [f64; 2], model: AugmentedModel| {
+        let left = Left::of(&model, held).mean_squares();
         [least[0].min(left[0]), least[1].min(left[1])]
     };
     carried::models(setting, found, guesses, by_map).fold([f64::INFINITY; 2], least_of)
@@ -128,18 +129,6 @@ fn share(before: [f64; 2], after: [f64; 2], floor_square: f64) -> f64 {
 /// What is `left` beyond `floor_square`, in N², and as much as that at least: shares of less would be shares of the noise.
 fn beyond(left: f64, floor_square: f64) -> f64 {
     (left - floor_square).max(floor_square)
-}
-
-/// Mean squares of what `model` leaves, in N²: over all instants with a force, and over the counted ones.
-fn mean_squares(track: &Track, model: &AugmentedModel) -> [f64; 2] {
-    let modelled_n = track.modelled_n(&model.elsewhere());
-    let mean_square = |takes: &dyn Fn(usize) -> bool| {
-        let taken = (0..track.n()).filter(|&at| track.instants[at].force_n.is_finite() && takes(at));
-        let squares = taken.map(|at| (track.instants[at].force_n - modelled_n[at]).powi(2));
-        let (sum, n) = squares.fold((0.0, 0_u32), |(sum, n), square| (sum + square, n + 1));
-        sum / f64::from(n.max(1))
-    };
-    [mean_square(&|_| true), mean_square(&|at| track.counted[at])]
 }
 
 #[cfg(test)]

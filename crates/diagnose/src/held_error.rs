@@ -28,6 +28,8 @@ pub(crate) struct Left {
     pieces: Vec<f64>,
     /// The same over the counted instants of the piece.
     counted: Vec<f64>,
+    /// Number of the counted instants of all.
+    n_counted: usize,
 }
 
 impl Left {
@@ -55,16 +57,17 @@ impl Left {
 
     /// Of a model that has no force for what was held out.
     pub(crate) fn endless() -> Self {
-        Self { each: vec![(f64::INFINITY, 1.0)], pieces: Vec::new(), counted: Vec::new() }
+        Self { each: vec![(f64::INFINITY, 1.0)], pieces: Vec::new(), counted: Vec::new(), n_counted: 0 }
     }
 
     /// Of what is missed of every recording, in N, and whether that counts.
     pub(crate) fn of_each(recordings: impl Iterator<Item = Vec<(f64, bool)>>) -> Self {
-        let mut left = Self { each: Vec::new(), pieces: Vec::new(), counted: Vec::new() };
+        let mut left = Self { each: Vec::new(), pieces: Vec::new(), counted: Vec::new(), n_counted: 0 };
         let sum = |missed_n: &[(f64, bool)]| missed_n.iter().map(|missed| missed.0.powi(2)).sum::<f64>();
         for missed_n in recordings {
             let n = missed_n.len() as f64;
             left.each.push((f64::sqrt(sum(&missed_n) / n.max(1.0)), n));
+            left.n_counted += missed_n.iter().filter(|missed| missed.1).count();
             for piece in missed_n.chunks(missed_n.len().div_ceil(PIECES).max(1)) {
                 left.pieces.push(sum(piece));
                 left.counted.push(piece.iter().filter(|missed| missed.1).map(|missed| missed.0.powi(2)).sum());
@@ -80,6 +83,11 @@ impl Left {
             .iter()
             .fold((0.0, 0.0), |(squares, count), (left_n, n)| (squares + left_n * left_n * n, count + n));
         f64::sqrt(squares / f64::max(count, 1.0))
+    }
+
+    /// Mean squares, in N²: over all instants, and over the counted ones.
+    pub(crate) fn mean_squares(&self) -> [f64; 2] {
+        [self.together_n().powi(2), self.counted.iter().sum::<f64>() / self.n_counted.max(1) as f64]
     }
 
     /// Whether it is more than `base` leaves, by more than rounding.
@@ -127,6 +135,13 @@ mod tests {
         assert!(!left([4.0, 1.0]).is_bettered_by(&left([2.0, 1.2])));
         assert!(!left([4.0, 1.0]).is_bettered_by(&left([3.95, 1.0])));
         assert!((left([3.0, 4.0]).together_n() - 12.5_f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn mean_squares_are_over_all_instants_and_over_those_that_count() {
+        let left = Left::of_each([vec![(3.0, true), (5.0, false)], vec![(1.0, true), (1.0, false)]].into_iter());
+        let [all, counted] = left.mean_squares();
+        assert!((all - 9.0).abs() < 1e-12 && (counted - 5.0).abs() < 1e-12, "{all} {counted}");
     }
 
     #[test]
