@@ -32,6 +32,7 @@ mod carried;
 mod rest;
 mod states;
 mod thresholds;
+mod travel;
 mod turn;
 
 use states::{Bounds, State, Unturned, moving_average, slide};

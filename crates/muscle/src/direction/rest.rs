@@ -2,6 +2,10 @@
 
 use std::ops::Range;
 
+use nalgebra::Vector3;
+
+use super::turn::fit;
+
 /// How long the length must stand still before pressure takes its place, in s.
 pub const STANDSTILL_S: f64 = 1.0;
 
@@ -43,6 +47,25 @@ fn within(time_s: &[f64], values: &[f64], threshold: f64, least_s: f64) -> Vec<R
         }
     }
     found
+}
+
+/// Share of the play that a length which never rests goes through at least: less is what frame and cord give.
+const GOES_M: f64 = 0.5;
+/// Deviations by which a parabola must describe it better than a rest does.
+const SURELY: f64 = 3.0;
+
+/// Whether `values`, which stay within `threshold`, never rest: whether a parabola, a turn or a crawl, describes them better than a
+/// level with a motion before and after it, which has as many weights. `noise` is the deviation of a value.
+pub(super) fn never_rests(values: &[f64], threshold: f64, noise: f64) -> bool {
+    let half = 0.5 * (values.len() as f64 - 1.0);
+    let along = |at: f64| at / half - 1.0;
+    let parabola = |u: f64| Vector3::new(1.0, u, u * u);
+    let rest = |u: f64| Vector3::new(1.0, (u + 0.5).min(0.0), (u - 0.5).max(0.0));
+    let fitted = |row: &dyn Fn(f64) -> Vector3<f64>| fit(values, 1, values[0], |at| row(along(at)));
+    let Some(((bent, weights), (level, _))) = fitted(&parabola).zip(fitted(&rest)) else { return false };
+    let vertex = (-0.5 * weights[1] / weights[2]).clamp(-1.0, 1.0);
+    let reached = [-1.0, if vertex.is_finite() { vertex } else { 0.0 }, 1.0].map(|u| weights.dot(&parabola(u)));
+    level - bent > (SURELY * noise).powi(2) && range(&reached) > GOES_M * threshold
 }
 
 /// Deviations of a length that rests beyond which it moves.
@@ -114,4 +137,29 @@ fn range(values: &[f64]) -> f64 {
         high = high.max(value);
     }
     high - low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a length of 300 rows with so much noise, in m, never rests.
+    fn moves(truth: &dyn Fn(f64) -> f64, noise_m: f64) -> bool {
+        let noise = |row: u32| noise_m * 12f64.sqrt() * (f64::from(row * 7919 % 1013) / 1013.0 - 0.5);
+        let values: Vec<f64> = (0..300).map(|row| truth(f64::from(row) / 299.0) + noise(row)).collect();
+        never_rests(&values, 5.0 * noise_m, noise_m)
+    }
+
+    #[test]
+    fn a_slow_turn_and_a_crawl_never_rest() {
+        assert!(moves(&|along| 16e-5 * (along - 0.5).powi(2), 1e-5), "turn");
+        assert!(moves(&|along| 5e-5 * along, 1e-5), "crawl");
+    }
+
+    #[test]
+    fn what_moves_only_at_its_ends_rests_and_so_does_what_only_gives_a_little() {
+        assert!(!moves(&|_| 0.0, 1e-5), "noise");
+        assert!(!moves(&|along| 5e-4 * (along - 0.9).max(0.0), 1e-5), "end of a motion");
+        assert!(!moves(&|along| 2e-5 * along, 1e-5), "give");
+    }
 }

@@ -3,10 +3,10 @@
 
 use std::ops::Range;
 
-use super::rest::{pushed, standstills};
+use super::rest::{never_rests, pushed, standstills};
 use super::thresholds::{Driver, Standstill, Thresholds};
+use super::travel::{path, turn_over, turns_of};
 use super::turn::{NOISE, Turn};
-use crate::smoothing::{Sliding, Window};
 
 /// Length of the moving average, in s; at least five samples and at most 101 are averaged.
 pub const WINDOW_S: f64 = 0.05;
@@ -45,7 +45,7 @@ impl Bounds {
     }
 
     /// The sign where it is certain, 0 elsewhere.
-    fn sign(self) -> i8 {
+    pub(super) fn sign(self) -> i8 {
         if self.is_known() { self.middle().signum() as i8 } else { 0 }
     }
 
@@ -106,7 +106,9 @@ impl Unturned {
         let contraction = moving_average(&shortening, half);
         play(&contraction, &shortening, thresholds.length_m, half, carried.sign(), &mut marks);
         let pressure = moving_average(pressure_pa, half);
-        let resting = standstills(time_s, &contraction, thresholds.length_m);
+        let mut resting = standstills(time_s, &contraction, thresholds.length_m);
+        resting
+            .retain(|still| !never_rests(&shortening[still.clone()], thresholds.length_m, NOISE * thresholds.length_m));
         // Deviation of an average of the length at rest.
         let noise_m = NOISE * thresholds.length_m / ((2 * half + 1) as f64).sqrt();
         let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
@@ -138,7 +140,11 @@ impl Unturned {
                 states[still.end..still.end + unmoved].fill(after);
             }
         }
-        let path = if turns { path(time_s, period_s, &shortening, thresholds) } else { Vec::new() };
+        let path = if turns {
+            path(time_s, period_s, &shortening, thresholds, &turns_of(&states, &pushed))
+        } else {
+            Vec::new()
+        };
         let reach = slow.long;
         let pushed = if thresholds.standstill == Standstill::Held { Vec::new() } else { pushed };
         Self { states, carried, pushed, path, reach }
@@ -163,88 +169,6 @@ fn keep(from: usize, until: usize, before: i8, marks: &mut [i8]) {
     let turn = if from + turn < until { turn } else { 0 };
     after[..turn].fill(last);
     after[turn..].iter_mut().take_while(|mark| **mark == 0).for_each(|mark| *mark = last);
-}
-
-/// Deviation that is left in the path that friction turns over on, in m, where the window allows: less than strands give.
-const PATH_M: f64 = 4e-6;
-/// Longest half of that window, in s: half a period of what a muscle does.
-const PATH_S: f64 = 0.15;
-
-/// `shortening` as parabolas describe it, over windows as long as its noise needs.
-fn path(time_s: &[f64], period_s: f64, shortening: &[f64], thresholds: Thresholds) -> Vec<f64> {
-    // A parabola over n values leaves 2.25 / n of the variance in the middle one.
-    let n = 2.25 * (NOISE * thresholds.length_m / PATH_M).powi(2);
-    let window = Window::over(time_s, (0.5 * n * period_s).min(PATH_S));
-    let mut sliding = Sliding::along(&window, shortening);
-    (0..shortening.len()).map(|row| sliding.parabola(row).value).collect()
-}
-
-/// Lets the states follow the travel along `path` after every turn, as `thresholds` say; over the stretches `pushed` the
-/// pressure moves them. A turn is where the path is farthest, within `reach` rows of where the sign changes.
-fn turn_over(
-    path: &[f64],
-    thresholds: Thresholds,
-    reach: usize,
-    carried: Bounds,
-    pushed: &[Range<usize>],
-    states: &mut [State],
-) {
-    let mut ways: Vec<i8> = states.iter().map(|state| state.bounds.sign()).collect();
-    let mut is_pushed = vec![false; states.len()];
-    pushed.iter().for_each(|still| is_pushed[still.clone()].fill(true));
-    let mut state = carried.is_known().then(|| carried.middle());
-    let mut sign = carried.sign();
-    // The last turn, the state there, and the farthest travel from it.
-    let (mut turn, mut at_turn, mut farthest_m) = (0, state, 0.0);
-    let mut row = 0;
-    while row < states.len() {
-        if !states[row].bounds.is_known() {
-            row += 1;
-            continue;
-        }
-        if is_pushed[row] {
-            state = Some(states[row].bounds.middle());
-            sign = 0;
-            row += 1;
-            continue;
-        }
-        let way = f64::from(ways[row]);
-        if ways[row] != sign {
-            let around = extreme(path, row, reach, way);
-            // What came before the turn still goes the other way, what lies between it and here came this way already.
-            let free = |rows: Range<usize>| rows.into_iter().all(|row| !is_pushed[row] && ways[row] != 0);
-            if sign != 0 && around > row && free(row..around) {
-                ways[row..around].fill(sign);
-                continue;
-            }
-            let back = around.max(turn);
-            let from = if sign != 0 && back < row && free(back..row) { back } else { row };
-            sign = ways[row];
-            ways[from..row].fill(sign);
-            (turn, farthest_m) = (around.min(row), 0.0);
-            at_turn = if 0 < from && from < row { Some(states[from].bounds.middle()) } else { state };
-            row = from;
-        }
-        farthest_m = f64::max(farthest_m, way * (path[row] - path[turn]));
-        let turned_m = (farthest_m - thresholds.held_m).max(0.0);
-        // Nothing is known of what came before the first motion.
-        let turned = match at_turn {
-            Some(state) if turned_m == 0.0 => state,
-            Some(state) if thresholds.turn_m > 0.0 => {
-                (state + 2.0 * way * turned_m / thresholds.turn_m).clamp(-1.0, 1.0)
-            }
-            _ => way,
-        };
-        state = Some(turned);
-        states[row].bounds = Bounds::at(turned);
-        row += 1;
-    }
-}
-
-/// The row within `reach` of `row` from which `path` goes the way of `way`.
-fn extreme(path: &[f64], row: usize, reach: usize, way: f64) -> usize {
-    let around = row.saturating_sub(reach)..path.len().min(row + reach);
-    around.min_by(|&one, &other| (way * path[one]).total_cmp(&(way * path[other]))).unwrap_or(row)
 }
 
 /// What marks say, with `carried` before the first motion.

@@ -63,6 +63,24 @@ fn vertex(values: &[f64], stride: usize) -> Option<(f64, f64, f64)> {
     at.is_finite().then_some((left, at, bend))
 }
 
+/// Deviations by which one parabola must fall short of two.
+const SURELY: f64 = 4.0;
+
+/// Whether the parabola through `values` goes across something else at value `at`: whether two parabolas, before it and from there
+/// on, surely leave less. `noise` is the deviation of a value.
+pub(super) fn is_across(values: &[f64], at: usize, noise: f64) -> bool {
+    let left = |values: &[f64]| {
+        let middle = 0.5 * values.len() as f64;
+        fit(values, 1, values[0], |at| Vector3::new(1.0, at - middle, (at - middle).powi(2))).map(|(left, _)| left)
+    };
+    let (before, after) = values.split_at(at);
+    if before.len() < 4 || after.len() < 4 {
+        return true;
+    }
+    let two = left(before).zip(left(after)).map(|(before, after)| before + after);
+    left(values).zip(two).is_none_or(|(one, two)| one - two > (SURELY * noise).powi(2))
+}
+
 /// The two lines through `values` that meet where they leave least and turn there the way of `sign`: squares that they leave,
 /// the corner, the change of the slope.
 fn corner(values: &[f64], stride: usize, sign: f64) -> Option<(f64, usize, f64)> {
@@ -79,7 +97,12 @@ fn corner(values: &[f64], stride: usize, sign: f64) -> Option<(f64, usize, f64)>
 }
 
 /// Least squares of every `stride`-th of `values` less `origin`: squares that are left, and weights.
-fn fit(values: &[f64], stride: usize, origin: f64, row: impl Fn(f64) -> Vector3<f64>) -> Option<(f64, Vector3<f64>)> {
+pub(super) fn fit(
+    values: &[f64],
+    stride: usize,
+    origin: f64,
+    row: impl Fn(f64) -> Vector3<f64>,
+) -> Option<(f64, Vector3<f64>)> {
     let (mut normal, mut right, mut squares) = (Matrix3::zeros(), Vector3::zeros(), 0.0);
     for (at, value) in values.iter().enumerate().step_by(stride) {
         let (row, value) = (row(at as f64), value - origin);

@@ -1,0 +1,219 @@
+//! How friction turns over along the travel after a turn, and the path that this travel is taken from.
+
+use std::ops::Range;
+
+use super::states::{Bounds, State};
+use super::thresholds::Thresholds;
+use super::turn::{NOISE, is_across};
+use crate::smoothing::{Sliding, Window};
+
+/// Deviation that is left in the path that friction turns over on, in m, where the window allows: less than strands give.
+const PATH_M: f64 = 4e-6;
+/// Longest half of that window, in s: half a period of what a muscle does.
+const PATH_S: f64 = 0.15;
+
+/// Rows at which the length turns as the signs of `states` say; none where the pressure turns friction over.
+pub(super) fn turns_of(states: &[State], pushed: &[Range<usize>]) -> Vec<usize> {
+    let is_pushed = |row: usize| pushed.iter().any(|still| still.start <= row && row <= still.end);
+    let is_turn = |row: &usize| {
+        let [before, after] = [*row - 1, *row].map(|row| states[row].bounds.sign());
+        before != after && !is_pushed(*row)
+    };
+    (1..states.len()).filter(is_turn).collect()
+}
+
+/// How a path is smooth around a turn.
+struct Bend {
+    row: usize,
+    /// Rows to either side that a parabola goes over.
+    half: usize,
+    /// Whether none goes across the turn.
+    is_split: bool,
+}
+
+impl Bend {
+    /// Rows to either side of the shortest parabola.
+    const LEAST_HALF: usize = 4;
+
+    /// Around `row` of `shortening`, where a parabola over `half` rows to either side is as long as the noise needs: the longest that
+    /// describes the turn, across it or, where it is a corner, up to it from both sides.
+    fn of(shortening: &[f64], row: usize, half: usize, noise_m: f64) -> Self {
+        let is_described = |from: usize, at: usize, to: usize| {
+            let to = to.min(shortening.len());
+            to - from < 2 * Self::LEAST_HALF || !is_across(&shortening[from..to], at - from, noise_m)
+        };
+        let mut half = half;
+        loop {
+            let (before, after) = (row.saturating_sub(half), row + half + 1);
+            let is_smooth = is_described(before, row, after);
+            let is_split = !is_smooth
+                && is_described(row.saturating_sub(2 * half + 1), before, row)
+                && is_described(row, after.min(shortening.len()), row + 2 * half + 1);
+            if is_smooth || is_split || half <= Self::LEAST_HALF {
+                return Self { row, half, is_split };
+            }
+            half = (half / 2).max(Self::LEAST_HALF);
+        }
+    }
+}
+
+/// `shortening` as parabolas describe it, over windows as long as its noise needs and as short as its `turns` do: one that goes across
+/// a turn that it does not describe, such as a corner, has its vertex elsewhere.
+pub(super) fn path(
+    time_s: &[f64],
+    period_s: f64,
+    shortening: &[f64],
+    thresholds: Thresholds,
+    turns: &[usize],
+) -> Vec<f64> {
+    let n_rows = shortening.len();
+    let noise_m = NOISE * thresholds.length_m;
+    // A parabola over n values leaves 2.25 / n of the variance in the middle one.
+    let n = 2.25 * (noise_m / PATH_M).powi(2);
+    let longest = Window::over(time_s, (0.5 * n * period_s).min(PATH_S)).half;
+    let bends: Vec<Bend> = turns.iter().map(|&turn| Bend::of(shortening, turn, longest, noise_m)).collect();
+    let mut path = Vec::with_capacity(n_rows);
+    // Rows between two splits, one window after the other.
+    let mut from = 0;
+    for index in 0..=bends.len() {
+        let (before, after) = (index.checked_sub(1).map(|index| &bends[index]), bends.get(index));
+        if let Some(bend) = before.filter(|bend| bend.is_split) {
+            from = bend.row;
+        }
+        let to = bends[index..].iter().find(|bend| bend.is_split).map_or(n_rows, |bend| bend.row);
+        let half = before.into_iter().chain(after).fold(longest, |half, bend| half.min(bend.half));
+        let piece = &shortening[from..to];
+        let half = half.min((piece.len().max(1) - 1) / 2);
+        let window = Window::over(&time_s[from..to], half as f64 * period_s);
+        let mut sliding = Sliding::along(&window, piece);
+        let rows = before.map_or(0, |bend| bend.row)..after.map_or(n_rows, |bend| bend.row);
+        path.extend(rows.map(|row| sliding.parabola(row - from).value));
+    }
+    path
+}
+
+/// Lets the states follow the travel along `path` after every turn, as `thresholds` say; over the stretches `pushed` the
+/// pressure moves them. A turn is where the path is farthest, within `reach` rows of where the sign changes.
+pub(super) fn turn_over(
+    path: &[f64],
+    thresholds: Thresholds,
+    reach: usize,
+    carried: Bounds,
+    pushed: &[Range<usize>],
+    states: &mut [State],
+) {
+    let mut ways: Vec<i8> = states.iter().map(|state| state.bounds.sign()).collect();
+    let mut is_pushed = vec![false; states.len()];
+    pushed.iter().for_each(|still| is_pushed[still.clone()].fill(true));
+    let mut state = carried.is_known().then(|| carried.middle());
+    let mut sign = carried.sign();
+    // The last turn, the state there, and the farthest travel from it.
+    let (mut turn, mut at_turn, mut farthest_m) = (0, state, 0.0);
+    let mut row = 0;
+    while row < states.len() {
+        if !states[row].bounds.is_known() {
+            row += 1;
+            continue;
+        }
+        if is_pushed[row] {
+            state = Some(states[row].bounds.middle());
+            sign = 0;
+            row += 1;
+            continue;
+        }
+        let way = f64::from(ways[row]);
+        if ways[row] != sign {
+            // No farther than the turns on either side.
+            let next = row + ways[row..].iter().take(reach).take_while(|other| **other == ways[row]).count();
+            let around = extreme(path, row.saturating_sub(reach).max(turn)..next, way).unwrap_or(row);
+            // What came before the turn still goes the other way, what lies between it and here came this way already.
+            let free = |rows: Range<usize>| rows.into_iter().all(|row| !is_pushed[row] && ways[row] != 0);
+            if sign != 0 && around > row && free(row..around) {
+                ways[row..around].fill(sign);
+                continue;
+            }
+            let back = around.max(turn);
+            let from = if sign != 0 && back < row && free(back..row) { back } else { row };
+            sign = ways[row];
+            ways[from..row].fill(sign);
+            (turn, farthest_m) = (around.min(row), 0.0);
+            at_turn = if 0 < from && from < row { Some(states[from].bounds.middle()) } else { state };
+            row = from;
+        }
+        farthest_m = f64::max(farthest_m, way * (path[row] - path[turn]));
+        let turned_m = (farthest_m - thresholds.held_m).max(0.0);
+        // Nothing is known of what came before the first motion.
+        let turned = match at_turn {
+            Some(state) if turned_m == 0.0 => state,
+            Some(state) if thresholds.turn_m > 0.0 => {
+                (state + 2.0 * way * turned_m / thresholds.turn_m).clamp(-1.0, 1.0)
+            }
+            _ => way,
+        };
+        state = Some(turned);
+        states[row].bounds = Bounds::at(turned);
+        row += 1;
+    }
+}
+
+/// The row among `rows` from which `path` goes the way of `way`.
+fn extreme(path: &[f64], rows: Range<usize>, way: f64) -> Option<usize> {
+    rows.min_by(|&one, &other| (way * path[one]).total_cmp(&(way * path[other])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::direction::thresholds::Standstill;
+
+    const PERIOD_S: f64 = 0.005;
+
+    /// Of a length with so much noise, in m.
+    fn thresholds(noise_m: f64) -> Thresholds {
+        let length_m = noise_m / NOISE;
+        Thresholds { length_m, pressure_pa: 1e3, held_m: 0.0, turn_m: 0.0, standstill: Standstill::Held }
+    }
+
+    /// The path of `truth` over 200 rows, recorded with 20 µm of noise, which turns at each of `turns`; the largest distance from it.
+    fn off_m(truth: &dyn Fn(f64) -> f64, turns: &[usize]) -> f64 {
+        let time_s: Vec<f64> = (0..200).map(|row| PERIOD_S * f64::from(row)).collect();
+        let noise_m = |row: usize| 40e-6 * ((row * 7919 % 1013) as f64 / 1013.0 - 0.5);
+        let recorded: Vec<f64> = time_s.iter().enumerate().map(|(row, &t)| truth(t) + noise_m(row)).collect();
+        let path = path(&time_s, PERIOD_S, &recorded, thresholds(20e-6), turns);
+        path.iter().zip(&time_s).map(|(path, &t)| (path - truth(t)).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_path_keeps_a_corner_and_is_smooth_across_a_vertex() {
+        // Slowly there and fast back: a parabola across it would lie off by a tenth of a millimetre, and turn where it does.
+        let corner = |t: f64| if t < 0.5 { -2e-3 * (t - 0.5) } else { 20e-3 * (t - 0.5) };
+        let vertex = |t: f64| 4e-3 * (t - 0.5).powi(2);
+        assert!(off_m(&corner, &[]) > 1e-4, "{}", off_m(&corner, &[]));
+        assert!(off_m(&corner, &[100]) < 2e-5, "{}", off_m(&corner, &[100]));
+        assert_eq!(off_m(&vertex, &[100]).to_bits(), off_m(&vertex, &[]).to_bits());
+    }
+
+    #[test]
+    fn a_path_follows_swings_that_are_shorter_than_its_windows() {
+        // Half a swing is 20 rows, as long as what the noise asks for on one side.
+        let swings = |t: f64| 1e-3 * (10.0 * std::f64::consts::PI * t).cos();
+        let turns: Vec<usize> = (1..10).map(|turn| 20 * turn).collect();
+        assert!(off_m(&swings, &[]) > 5e-4, "{}", off_m(&swings, &[]));
+        assert!(off_m(&swings, &turns) < 8e-5, "{}", off_m(&swings, &turns));
+    }
+
+    #[test]
+    fn friction_turns_over_after_its_own_turn_where_others_are_near() {
+        // Swings that grow: the farthest point within reach is that of a later one.
+        let path: Vec<f64> = (0..120).map(|row| 1e-5 * f64::from(row) * (0.3 * f64::from(row)).sin()).collect();
+        let way = |row: usize| if path[row] > path[row - 1] { 1.0 } else { -1.0 };
+        let ways: Vec<f64> = (1..120).map(way).collect();
+        let ways: Vec<f64> = [ways[0]].into_iter().chain(ways).collect();
+        let mut states: Vec<State> =
+            ways.iter().map(|&way| State { bounds: Bounds::at(way), is_settled: true }).collect();
+        let slow = Thresholds { turn_m: 1e-6, ..thresholds(1e-6) };
+        turn_over(&path, slow, 40, Bounds::at(ways[0]), &[], &mut states);
+        let off = states.iter().zip(&ways).filter(|(state, way)| state.bounds.middle() * **way < 0.0).count();
+        assert!(off <= ways.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count(), "{off}");
+    }
+}
