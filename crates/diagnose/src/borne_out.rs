@@ -119,10 +119,16 @@ fn least(setting: &Setting<'_>, found: &Found, held: &Track, guesses: &[Candidat
     carried::models(setting, found, guesses, by_map).fold([f64::INFINITY; 2], least_of)
 }
 
+/// Whether what is left of held-out recordings is so much less `after` than `before`, beyond what sensors leave, `floor_square` in N²,
+/// that it bears out what has been added.
+pub(crate) fn bears_out(before: &Left, after: &Left, floor_square: f64) -> bool {
+    share(before.mean_squares(), after.mean_squares(), floor_square) >= LEAST_SHARE
+}
+
 /// Share of what is left `before`, mean squares in N² beyond `floor_square`, that is no longer left `after`: over all instants or the
-/// counted ones, whichever shows more.
+/// counted ones, whichever shows more. What is taken of the noise itself, as a lag of a noisy pressure does, is none.
 fn share(before: [f64; 2], after: [f64; 2], floor_square: f64) -> f64 {
-    let share = |at: usize| (before[at] - after[at]) / beyond(before[at], floor_square);
+    let share = |at: usize| (before[at] - after[at].max(floor_square)) / beyond(before[at], floor_square);
     share(0).max(share(1))
 }
 
@@ -174,6 +180,8 @@ mod tests {
         assert!((share([5.0, 3.0], [3.0, 2.9], 1.0) - 0.5).abs() < 1e-12);
         assert!((share([5.0, 3.0], [4.9, 2.0], 1.0) - 0.5).abs() < 1e-12);
         assert!((share([1.1, 1.1], [1.0, 1.0], 1.0) - 0.1).abs() < 1e-12, "within the noise");
+        assert!((share([1.1, 1.1], [0.5, 0.5], 1.0) - 0.1).abs() < 1e-12, "of the noise itself");
+        assert!((share([5.0, 3.0], [6.0, 4.0], 1.0) + 0.25).abs() < 1e-12, "harm");
     }
 
     /// Names that stay, and those that held-out recordings deny, of a muscle with so much damping in the fitted recordings and in the

@@ -8,6 +8,7 @@ use super::bends::{PREFERRED, bends};
 use super::field::Field;
 use super::screen::{self, Said};
 use super::{joined, stability};
+use crate::borne_out::bears_out;
 use crate::carried::OF_THE_FIT;
 use crate::held_error::Left;
 use crate::joint::HeldOut;
@@ -144,9 +145,11 @@ pub(crate) fn discover(
             let written = &next.terms[next.terms.len() - 1];
             let is_no_chance = || chance(&written.without, &written.with) * LOOKS < CHANCE;
             let is_confirmed = match (&last, &now) {
-                // Where nothing has to be missing, blocks and hold-outs have to agree.
+                // Where nothing has to be missing, blocks and hold-outs have to agree, and a term is asked for what a name is.
                 (Some(last), Some(now)) => {
-                    last.is_surely_bettered_by(now) && (verdict != Verdict::Consistent || is_no_chance())
+                    last.is_surely_bettered_by(now)
+                        && (verdict != Verdict::Consistent
+                            || is_no_chance() && bears_out(last, now, sizes.sensors_n.powi(2)))
                 }
                 _ => is_no_chance(),
             };
