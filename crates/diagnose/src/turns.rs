@@ -27,7 +27,7 @@ const SURELY: f64 = 4.0;
 /// Times that what is mistaken is looked for, beside a fit without it.
 const ROUNDS: usize = 5;
 /// Deviations of a normal distribution in its median of sizes.
-const PER_MEDIAN: f64 = 1.4826;
+pub(crate) const PER_MEDIAN: f64 = 1.4826;
 
 /// The track of `setting` without instants beside turns whose direction is mistaken.
 pub(crate) fn without_mistaken(setting: &Setting<'_>, start: &[f64], model: &ForceModel, floor_n: f64) -> Track {

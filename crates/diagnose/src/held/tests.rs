@@ -69,6 +69,20 @@ fn what_is_left_is_a_root_mean_square_over_what_counts() {
 }
 
 #[test]
+fn what_is_typically_left_does_not_care_for_a_few_stretches() {
+    assert!((typical_n(&trace_of([1e5; 4], [0.5, -40.0, 1.0, 1e3])) - PER_MEDIAN).abs() < 1e-12);
+    assert_eq!(typical_n(&Trace { settled: vec![false; 4], ..trace_of([1e5; 4], [0.0; 4]) }), 0.0);
+}
+
+#[test]
+fn another_muscle_is_missed_by_far_more_than_others_and_wherever_it_goes() {
+    assert!(is_of_another(5.0, 2.0, 1.0, 2.0));
+    assert!(!is_of_another(3.9, 2.0, 1.0, 1.0), "by no more than a memory that goes on");
+    assert!(!is_of_another(5.0, 2.0, 1.0, 2.6), "by no more than others");
+    assert!(!is_of_another(5.0, 1.4, 1.0, 2.0), "at a few stretches");
+}
+
+#[test]
 fn a_hold_out_of_the_same_muscle_is_not_missed() {
     let held = held(vec![recorded("again.csv", later, &artifact(), 1.0)]);
     assert!(held.missed.is_empty() && held.noticed.is_empty() && held.unjudged.is_empty(), "{held:?}");
