@@ -2,7 +2,7 @@
 
 use pam_artifact::diagnosis::Region;
 use pam_muscle::Coordinate;
-use pam_muscle::effects::Kind;
+use pam_muscle::effects::{AugmentedModel, Kind};
 
 use crate::regions::{Place, concentrated, from_event};
 use crate::search::{Found, chance};
@@ -29,7 +29,10 @@ pub(crate) fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) ->
         let region = if guess.effect.kind() == Kind::Event {
             from_event(setting, guess, &excess, p_value, paths)
         } else {
-            concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths).map(|place| place.region)
+            // A base refitted without friction, rate or memory spreads what these do over all: where they act says it. What a
+            // static effect does is smooth nearly everywhere, and a mismatch where eq. 11 cannot follow.
+            let acts = if guess.effect.is_static() { excess } else { own_square(setting, state, index) };
+            concentrated(setting, &found.coordinates, coordinate, &acts, p_value, paths).map(|place| place.region)
         };
         regions.extend(region.map(|region| (log_ratio, region)));
     }
@@ -38,6 +41,16 @@ pub(crate) fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) ->
     let known: Vec<Coordinate> = out.iter().map(|region| region.coordinate).collect();
     out.extend(telling(structured(setting, &found.whole.state, found, paths), &known));
     out
+}
+
+/// Square of the force that effect `index` of `state` has at every instant beside all else as it was fitted, in N².
+fn own_square(setting: &Setting<'_>, state: &State, index: usize) -> Vec<f64> {
+    let mut others = state.terms();
+    let all = AugmentedModel::new(state.model.clone(), others.clone());
+    others.remove(index);
+    let [with, without] =
+        [all, AugmentedModel::new(state.model.clone(), others)].map(|model| setting.track.modelled_n(&model));
+    with.iter().zip(&without).map(|(with, without)| (with - without).powi(2)).collect()
 }
 
 /// Those of `places`, the most telling first, over none of the coordinates `known`; what is everywhere only where there is

@@ -116,7 +116,6 @@ impl Direction {
         driver: Driver,
         travels: &[(f64, f64)],
     ) -> io::Result<Vec<(Self, Carried)>> {
-        let turns = travels.iter().any(|(held_m, turn_m)| *held_m > 0.0 || *turn_m > 0.0);
         let empty = || Self {
             states: Vec::with_capacity(n_rows),
             settled: Vec::with_capacity(n_rows),
@@ -132,8 +131,7 @@ impl Direction {
             for start in piece.clone().step_by(STRETCH_ROWS) {
                 let end = (start + STRETCH_ROWS).min(piece.end);
                 let (time_s, pressure_pa, length_m) = rows(recording, &(start..end))?;
-                let unturned =
-                    |before| Unturned::of(&time_s, &pressure_pa, &length_m, thresholds, driver, before, turns);
+                let unturned = |before| Unturned::of(&time_s, &pressure_pa, &length_m, thresholds, driver, before);
                 // What came before this stretch may have turned over within one travel and not within another.
                 let mut begun: Option<(Bounds, Unturned)> = None;
                 for ((direction, before), &(held_m, turn_m)) in all.iter_mut().zip(travels) {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::rest::{never_rests, pushed, standstills};
 use super::thresholds::{Driver, Standstill, Thresholds};
-use super::travel::{path, turn_over, turns_of};
+use super::travel::{Path, turn_over, turns_of};
 use super::turn::{NOISE, Turn};
 
 /// Length of the moving average, in s; at least five samples and at most 101 are averaged.
@@ -72,14 +72,14 @@ pub(super) struct Unturned {
     carried: Bounds,
     /// Where the pressure moves friction while the length rests.
     pushed: Vec<Range<usize>>,
-    /// Travels along which friction turns over, in m; empty where it takes none.
-    path: Vec<f64>,
+    /// Travels along which friction turns over, in m; none where no length says how it does.
+    path: Option<Path>,
     /// Rows within which a turn lies.
     reach: usize,
 }
 
 impl Unturned {
-    /// Of rows after the state `carried`; `turns` where friction will take any travel to turn over.
+    /// Of rows after the state `carried`.
     pub(super) fn of(
         time_s: &[f64],
         pressure_pa: &[f64],
@@ -87,9 +87,8 @@ impl Unturned {
         thresholds: Thresholds,
         driver: Driver,
         carried: Bounds,
-        turns: bool,
     ) -> Self {
-        let at_once = |states: Vec<State>| Self { states, carried, pushed: Vec::new(), path: Vec::new(), reach: 0 };
+        let at_once = |states: Vec<State>| Self { states, carried, pushed: Vec::new(), path: None, reach: 0 };
         let n = time_s.len();
         if n < 2 {
             return at_once(vec![State { bounds: carried, is_settled: true }; n]);
@@ -140,11 +139,8 @@ impl Unturned {
                 states[still.end..still.end + unmoved].fill(after);
             }
         }
-        let path = if turns {
-            path(time_s, period_s, &shortening, thresholds, &turns_of(&states, &pushed))
-        } else {
-            Vec::new()
-        };
+        let path = Path::of(time_s, period_s, &shortening, thresholds, &turns_of(&states, &pushed));
+        let path = Some(path);
         let reach = slow.long;
         let pushed = if thresholds.standstill == Standstill::Held { Vec::new() } else { pushed };
         Self { states, carried, pushed, path, reach }
@@ -153,8 +149,8 @@ impl Unturned {
     /// The states where friction turns over within the travels of `thresholds`.
     pub(super) fn turned(&self, thresholds: Thresholds) -> Vec<State> {
         let mut states = self.states.clone();
-        if (thresholds.held_m > 0.0 || thresholds.turn_m > 0.0) && !self.path.is_empty() {
-            turn_over(&self.path, thresholds, self.reach, self.carried, &self.pushed, &mut states);
+        if let Some(path) = &self.path {
+            turn_over(path, thresholds, self.reach, self.carried, &self.pushed, &mut states);
         }
         states
     }

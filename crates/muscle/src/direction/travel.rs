@@ -57,45 +57,65 @@ impl Bend {
     }
 }
 
-/// `shortening` as parabolas describe it, over windows as long as its noise needs and as short as its `turns` do: one that goes across
-/// a turn that it does not describe, such as a corner, has its vertex elsewhere.
-pub(super) fn path(
-    time_s: &[f64],
-    period_s: f64,
-    shortening: &[f64],
-    thresholds: Thresholds,
-    turns: &[usize],
-) -> Vec<f64> {
-    let n_rows = shortening.len();
-    let noise_m = NOISE * thresholds.length_m;
-    // A parabola over n values leaves 2.25 / n of the variance in the middle one.
-    let n = 2.25 * (noise_m / PATH_M).powi(2);
-    let longest = Window::over(time_s, (0.5 * n * period_s).min(PATH_S)).half;
-    let bends: Vec<Bend> = turns.iter().map(|&turn| Bend::of(shortening, turn, longest, noise_m)).collect();
-    let mut path = Vec::with_capacity(n_rows);
-    // Rows between two splits, one window after the other.
-    let mut from = 0;
-    for index in 0..=bends.len() {
-        let (before, after) = (index.checked_sub(1).map(|index| &bends[index]), bends.get(index));
-        if let Some(bend) = before.filter(|bend| bend.is_split) {
-            from = bend.row;
+/// Travels along which friction turns over.
+pub(super) struct Path {
+    /// In m.
+    travels_m: Vec<f64>,
+    /// Deviation that is left in them, in m.
+    noise_m: f64,
+}
+
+impl Path {
+    /// Deviations of the noise of a path that rests within.
+    const RESTS: f64 = 2.0;
+
+    /// `shortening` as parabolas describe it, over windows as long as its noise needs and as short as its `turns` do: one that goes
+    /// across a turn that it does not describe, such as a corner, has its vertex elsewhere.
+    pub(super) fn of(
+        time_s: &[f64],
+        period_s: f64,
+        shortening: &[f64],
+        thresholds: Thresholds,
+        turns: &[usize],
+    ) -> Self {
+        let n_rows = shortening.len();
+        let noise_m = NOISE * thresholds.length_m;
+        // A parabola over n values leaves 2.25 / n of the variance in the middle one.
+        let n = 2.25 * (noise_m / PATH_M).powi(2);
+        let longest = Window::over(time_s, (0.5 * n * period_s).min(PATH_S)).half;
+        let bends: Vec<Bend> = turns.iter().map(|&turn| Bend::of(shortening, turn, longest, noise_m)).collect();
+        let mut travels_m = Vec::with_capacity(n_rows);
+        // Rows between two splits, one window after the other.
+        let mut from = 0;
+        for index in 0..=bends.len() {
+            let (before, after) = (index.checked_sub(1).map(|index| &bends[index]), bends.get(index));
+            if let Some(bend) = before.filter(|bend| bend.is_split) {
+                from = bend.row;
+            }
+            let to = bends[index..].iter().find(|bend| bend.is_split).map_or(n_rows, |bend| bend.row);
+            let half = before.into_iter().chain(after).fold(longest, |half, bend| half.min(bend.half));
+            let piece = &shortening[from..to];
+            let half = half.min((piece.len().max(1) - 1) / 2);
+            let window = Window::over(&time_s[from..to], half as f64 * period_s);
+            let mut sliding = Sliding::along(&window, piece);
+            let rows = before.map_or(0, |bend| bend.row)..after.map_or(n_rows, |bend| bend.row);
+            travels_m.extend(rows.map(|row| sliding.parabola(row - from).value));
         }
-        let to = bends[index..].iter().find(|bend| bend.is_split).map_or(n_rows, |bend| bend.row);
-        let half = before.into_iter().chain(after).fold(longest, |half, bend| half.min(bend.half));
-        let piece = &shortening[from..to];
-        let half = half.min((piece.len().max(1) - 1) / 2);
-        let window = Window::over(&time_s[from..to], half as f64 * period_s);
-        let mut sliding = Sliding::along(&window, piece);
-        let rows = before.map_or(0, |bend| bend.row)..after.map_or(n_rows, |bend| bend.row);
-        path.extend(rows.map(|row| sliding.parabola(row - from).value));
+        Self { travels_m, noise_m: 1.5 * noise_m / ((2 * longest + 1) as f64).sqrt() }
     }
-    path
+
+    /// The last of `rows` at which it is still where it is farthest from going the way of `way`: of a rest before a motion, its end.
+    fn leaves(&self, rows: Range<usize>, way: f64) -> Option<usize> {
+        let ahead_m = |row: usize| way * self.travels_m[row];
+        let farthest_m = rows.clone().map(ahead_m).min_by(f64::total_cmp)?;
+        rows.rev().find(|&row| ahead_m(row) <= farthest_m + Self::RESTS * self.noise_m)
+    }
 }
 
 /// Lets the states follow the travel along `path` after every turn, as `thresholds` say; over the stretches `pushed` the
-/// pressure moves them. A turn is where the path is farthest, within `reach` rows of where the sign changes.
+/// pressure moves them. A turn is where the path leaves its farthest point, within `reach` rows of where the sign changes.
 pub(super) fn turn_over(
-    path: &[f64],
+    path: &Path,
     thresholds: Thresholds,
     reach: usize,
     carried: Bounds,
@@ -109,6 +129,10 @@ pub(super) fn turn_over(
     let mut sign = carried.sign();
     // The last turn, the state there, and the farthest travel from it.
     let (mut turn, mut at_turn, mut farthest_m) = (0, state, 0.0);
+    // Where the sign changed at one row and the path says another, nobody knows the direction between the two.
+    let doubt = |rows: Range<usize>, states: &mut [State]| {
+        states[rows].iter_mut().for_each(|state| state.is_settled = false);
+    };
     let mut row = 0;
     while row < states.len() {
         if !states[row].bounds.is_known() {
@@ -125,22 +149,24 @@ pub(super) fn turn_over(
         if ways[row] != sign {
             // No farther than the turns on either side.
             let next = row + ways[row..].iter().take(reach).take_while(|other| **other == ways[row]).count();
-            let around = extreme(path, row.saturating_sub(reach).max(turn)..next, way).unwrap_or(row);
+            let around = path.leaves(row.saturating_sub(reach).max(turn)..next, way).unwrap_or(row);
             // What came before the turn still goes the other way, what lies between it and here came this way already.
             let free = |rows: Range<usize>| rows.into_iter().all(|row| !is_pushed[row] && ways[row] != 0);
             if sign != 0 && around > row && free(row..around) {
                 ways[row..around].fill(sign);
+                doubt(row..around, states);
                 continue;
             }
             let back = around.max(turn);
             let from = if sign != 0 && back < row && free(back..row) { back } else { row };
             sign = ways[row];
             ways[from..row].fill(sign);
+            doubt(from..row, states);
             (turn, farthest_m) = (around.min(row), 0.0);
             at_turn = if 0 < from && from < row { Some(states[from].bounds.middle()) } else { state };
             row = from;
         }
-        farthest_m = f64::max(farthest_m, way * (path[row] - path[turn]));
+        farthest_m = f64::max(farthest_m, way * (path.travels_m[row] - path.travels_m[turn]));
         let turned_m = (farthest_m - thresholds.held_m).max(0.0);
         // Nothing is known of what came before the first motion.
         let turned = match at_turn {
@@ -154,11 +180,6 @@ pub(super) fn turn_over(
         states[row].bounds = Bounds::at(turned);
         row += 1;
     }
-}
-
-/// The row among `rows` from which `path` goes the way of `way`.
-fn extreme(path: &[f64], rows: Range<usize>, way: f64) -> Option<usize> {
-    rows.min_by(|&one, &other| (way * path[one]).total_cmp(&(way * path[other])))
 }
 
 #[cfg(test)]
@@ -179,8 +200,8 @@ mod tests {
         let time_s: Vec<f64> = (0..200).map(|row| PERIOD_S * f64::from(row)).collect();
         let noise_m = |row: usize| 40e-6 * ((row * 7919 % 1013) as f64 / 1013.0 - 0.5);
         let recorded: Vec<f64> = time_s.iter().enumerate().map(|(row, &t)| truth(t) + noise_m(row)).collect();
-        let path = path(&time_s, PERIOD_S, &recorded, thresholds(20e-6), turns);
-        path.iter().zip(&time_s).map(|(path, &t)| (path - truth(t)).abs()).fold(0.0, f64::max)
+        let path = Path::of(&time_s, PERIOD_S, &recorded, thresholds(20e-6), turns);
+        path.travels_m.iter().zip(&time_s).map(|(path, &t)| (path - truth(t)).abs()).fold(0.0, f64::max)
     }
 
     #[test]
@@ -212,7 +233,7 @@ mod tests {
         let mut states: Vec<State> =
             ways.iter().map(|&way| State { bounds: Bounds::at(way), is_settled: true }).collect();
         let slow = Thresholds { turn_m: 1e-6, ..thresholds(1e-6) };
-        turn_over(&path, slow, 40, Bounds::at(ways[0]), &[], &mut states);
+        turn_over(&Path { travels_m: path, noise_m: 1e-9 }, slow, 40, Bounds::at(ways[0]), &[], &mut states);
         let off = states.iter().zip(&ways).filter(|(state, way)| state.bounds.middle() * **way < 0.0).count();
         assert!(off <= ways.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count(), "{off}");
     }

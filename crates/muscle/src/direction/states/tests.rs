@@ -8,7 +8,7 @@ fn states_of(
     driver: Driver,
     carried: Bounds,
 ) -> Vec<State> {
-    Unturned::of(time_s, pressure_pa, length_m, thresholds, driver, carried, true).turned(thresholds)
+    Unturned::of(time_s, pressure_pa, length_m, thresholds, driver, carried).turned(thresholds)
 }
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
