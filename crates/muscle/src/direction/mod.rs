@@ -7,12 +7,14 @@
 //! is known depends on the noise: around it the direction is *unsettled*, and a fit does not count those
 //! samples, as little as those of a sensor that is out of its range.
 //!
-//! A turn is the vertex of the parabola or the corner of the two lines that describe the length around it, whichever leaves
-//! less: the play alone notices it a threshold late. After it friction keeps its sign over some tens of micrometers
-//! ([`Thresholds::held_m`], the play of joints and strands) and goes to the other one within some more
-//! ([`Thresholds::turn_m`], their give): what the recordings say.
+//! A turn is first the vertex of the parabola or the corner of the two lines that describe the length around it, whichever leaves
+//! less: the play alone notices it a threshold late. Near there the length leaves its farthest point, as a path says that no
+//! corner bends (`travel`): that is the turn, and where the two disagree the direction is unsettled. After it friction keeps its
+//! sign over some tens of micrometers ([`Thresholds::held_m`], the play of joints and strands) and goes to the other one within
+//! some more ([`Thresholds::turn_m`], their give): what the recordings say.
 //!
-//! What friction does where the length stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
+//! A length that stays within the play for a second stands still, unless it turns slowly or crawls all the while.
+//! What friction does where it stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
 //! keeps its last sign, or the strands slide under rising (+1, as if contracting) and falling pressure (-1), at once or only
 //! after the pressure has turned back by some amount. At the beginning of a segment nothing is known of it until the first
 //! motion: the state is zero there and the samples are unsettled. In a segment in which nothing ever moves it stays zero, and

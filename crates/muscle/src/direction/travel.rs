@@ -84,15 +84,19 @@ impl Path {
         let n = 2.25 * (noise_m / PATH_M).powi(2);
         let longest = Window::over(time_s, (0.5 * n * period_s).min(PATH_S)).half;
         let bends: Vec<Bend> = turns.iter().map(|&turn| Bend::of(shortening, turn, longest, noise_m)).collect();
+        // The next split at or after every turn, and after the last.
+        let mut ends = vec![n_rows; bends.len() + 1];
+        for (index, bend) in bends.iter().enumerate().rev() {
+            ends[index] = if bend.is_split { bend.row } else { ends[index + 1] };
+        }
         let mut travels_m = Vec::with_capacity(n_rows);
         // Rows between two splits, one window after the other.
         let mut from = 0;
-        for index in 0..=bends.len() {
+        for (index, to) in ends.into_iter().enumerate() {
             let (before, after) = (index.checked_sub(1).map(|index| &bends[index]), bends.get(index));
             if let Some(bend) = before.filter(|bend| bend.is_split) {
                 from = bend.row;
             }
-            let to = bends[index..].iter().find(|bend| bend.is_split).map_or(n_rows, |bend| bend.row);
             let half = before.into_iter().chain(after).fold(longest, |half, bend| half.min(bend.half));
             let piece = &shortening[from..to];
             let half = half.min((piece.len().max(1) - 1) / 2);
@@ -236,5 +240,25 @@ mod tests {
         turn_over(&Path { travels_m: path, noise_m: 1e-9 }, slow, 40, Bounds::at(ways[0]), &[], &mut states);
         let off = states.iter().zip(&ways).filter(|(state, way)| state.bounds.middle() * **way < 0.0).count();
         assert!(off <= ways.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count(), "{off}");
+    }
+
+    #[test]
+    fn what_lies_between_two_dates_of_a_turn_is_unsettled() {
+        // The sign changes at row 50; the length rests until row 60 and goes then.
+        let path = |leaves: usize| Path {
+            travels_m: (0..120).map(|row: usize| -1e-5 * row.saturating_sub(leaves) as f64).collect(),
+            noise_m: 1e-9,
+        };
+        let turned = |leaves: usize| {
+            let before = State { bounds: Bounds::at(1.0), is_settled: true };
+            let mut states = vec![before; 120];
+            states[50..].fill(State { bounds: Bounds::at(-1.0), ..before });
+            turn_over(&path(leaves), thresholds(1e-6), 20, Bounds::at(1.0), &[], &mut states);
+            let goes = states.iter().position(|state| state.bounds.middle() < 0.0);
+            let unsettled: Vec<usize> = (0..120).filter(|&row| !states[row].is_settled).collect();
+            (goes, unsettled)
+        };
+        assert_eq!(turned(60), (Some(61), (50..60).collect()));
+        assert_eq!(turned(40), (Some(41), (40..50).collect()));
     }
 }
