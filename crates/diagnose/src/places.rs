@@ -89,3 +89,35 @@ pub(crate) fn structured(setting: &Setting<'_>, state: &State, found: &Found, pa
     places.sort_by(|left, right| right.0.total_cmp(&left.0));
     places.into_iter().map(|(_, place)| place).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hypothesis::CandidateEffect;
+    use crate::rehearsal::tests::Given;
+    use crate::search::{Limits, judged, search};
+
+    use pam_muscle::effects::effect;
+
+    /// From where to where over its own coordinate the effect `id` lies, concealed and found with `shape`.
+    fn region(id: &'static str, shape: &[f64], size: &[f64]) -> Region {
+        let mut given = Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[(id, shape, size)]);
+        given.disturb();
+        let plain = Setting { floor_square: 0.09, ..given.setting() };
+        let mut found = search(&plain, &given.start, &given.model, &Limits::of_test(0, 0.3), &|| {}).expect("a search");
+        let nuisance = found.nuisance.clone();
+        let setting = plain.beside(&nuisance);
+        let effect = effect(id).expect("an id");
+        let guess = CandidateEffect { shape: shape.to_vec(), ..given.guess(id, &[]) };
+        let state = setting.fit_near(vec![guess], &found.best.state).expect("a fit");
+        found.best = judged(&setting, state).expect("a fit of every fold");
+        let regions = regions(&setting, &found, &[]);
+        regions.into_iter().find(|region| region.coordinate == effect.page().coordinate).expect("a region")
+    }
+
+    #[test]
+    fn friction_of_slow_motion_lies_at_slow_motion_though_a_base_without_it_is_wrong_everywhere() {
+        let region = region("stribeck", &[5e-3, 1.0, 0.0], &[4e-3]);
+        assert!(region.from < 1e-3 && (5e-3..15e-3).contains(&region.to), "{region:?}");
+    }
+}
