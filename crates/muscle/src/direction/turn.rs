@@ -63,7 +63,8 @@ fn vertex(values: &[f64], stride: usize) -> Option<(f64, f64, f64)> {
     at.is_finite().then_some((left, at, bend))
 }
 
-/// Deviations by which one parabola must fall short of two.
+/// Deviations by which one parabola must fall short of two. With 8 or 20, eq. 11 leaves as much of a hundred muscles of other worlds, to
+/// half a percent.
 const SURELY: f64 = 4.0;
 
 /// Whether the parabola through `values` goes across something else at value `at`: whether two parabolas, before it and from there
