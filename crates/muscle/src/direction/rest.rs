@@ -50,7 +50,7 @@ fn within(time_s: &[f64], values: &[f64], threshold: f64, least_s: f64) -> Vec<R
 }
 
 /// Share of the play that a length which never rests goes through at least: less is what frame and cord give.
-const GOES_M: f64 = 0.5;
+const LEAST_SWING: f64 = 0.5;
 /// Deviations by which a parabola must describe it better than a rest does.
 const SURELY: f64 = 3.0;
 
@@ -65,7 +65,7 @@ pub(super) fn never_rests(values: &[f64], threshold: f64, noise: f64) -> bool {
     let Some(((bent, weights), (level, _))) = fitted(&parabola).zip(fitted(&rest)) else { return false };
     let vertex = (-0.5 * weights[1] / weights[2]).clamp(-1.0, 1.0);
     let reached = [-1.0, if vertex.is_finite() { vertex } else { 0.0 }, 1.0].map(|u| weights.dot(&parabola(u)));
-    level - bent > (SURELY * noise).powi(2) && range(&reached) > GOES_M * threshold
+    level - bent > (SURELY * noise).powi(2) && range(&reached) > LEAST_SWING * threshold
 }
 
 /// Deviations of a length that rests beyond which it moves.
