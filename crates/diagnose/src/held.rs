@@ -13,7 +13,7 @@ use crate::coverage::Coverage;
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;
 use crate::nuisance::TARE_N;
-use crate::turns::PER_MEDIAN;
+use crate::turns;
 
 /// Times what is left of the fitted recordings that may be left of a held-out one, whatever the reason. A recording or two do
 /// not say what eq. 11 is elsewhere (2.6 times was seen of a healthy muscle), and memory goes on from recording to recording.
@@ -137,16 +137,10 @@ fn rmse_n(trace: &Trace) -> f64 {
     (sum / f64::from(n.max(1))).sqrt()
 }
 
-/// What the model of `trace` typically leaves of its counted samples, in N: the deviation of a normal distribution with their median
-/// size, which does not care for a few stretches.
+/// What the model of `trace` typically leaves of its counted samples, in N; nothing where none counts.
 fn typical_n(trace: &Trace) -> f64 {
     let counted = (0..trace.time_s.len()).filter(|&at| trace.settled[at]);
-    let mut sizes_n: Vec<f64> = counted.map(|at| (trace.force_n[at] - trace.model_n[at]).abs()).collect();
-    if sizes_n.is_empty() {
-        return 0.0;
-    }
-    let middle = sizes_n.len() / 2;
-    PER_MEDIAN * *sizes_n.select_nth_unstable_by(middle, f64::total_cmp).1
+    turns::typical_n(counted.map(|at| trace.force_n[at] - trace.model_n[at])).unwrap_or(0.0)
 }
 
 #[cfg(test)]

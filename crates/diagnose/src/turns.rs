@@ -27,7 +27,7 @@ const SURELY: f64 = 4.0;
 /// Times that what is mistaken is looked for, beside a fit without it.
 const ROUNDS: usize = 5;
 /// Deviations of a normal distribution in its median of sizes.
-pub(crate) const PER_MEDIAN: f64 = 1.4826;
+const PER_MEDIAN: f64 = 1.4826;
 
 /// The track of `setting` without instants beside turns whose direction is mistaken.
 pub(crate) fn without_mistaken(setting: &Setting<'_>, start: &[f64], model: &ForceModel, floor_n: f64) -> Track {
@@ -59,15 +59,18 @@ fn mistaken(track: &Track, beside: &[bool], residuals_n: &[f64]) -> Vec<usize> {
     let mut found = Vec::new();
     for range in &track.recordings {
         let counted = range.clone().filter(|&at| track.counted[at]);
-        let mut sizes_n: Vec<f64> = counted.clone().map(|at| residuals_n[at].abs()).collect();
-        if sizes_n.is_empty() {
-            continue;
-        }
-        let middle = sizes_n.len() / 2;
-        let median_n = *sizes_n.select_nth_unstable_by(middle, f64::total_cmp).1;
-        found.extend(counted.filter(|&at| beside[at] && residuals_n[at].abs() > SURELY * PER_MEDIAN * median_n));
+        let Some(typical_n) = typical_n(counted.clone().map(|at| residuals_n[at])) else { continue };
+        found.extend(counted.filter(|&at| beside[at] && residuals_n[at].abs() > SURELY * typical_n));
     }
     found
+}
+
+/// Deviation of a normal distribution with the median size of what is `left`, in its unit, which does not care for a few stretches; none
+/// where there is nothing.
+pub(crate) fn typical_n(left: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut sizes: Vec<f64> = left.map(f64::abs).collect();
+    let middle = sizes.len() / 2;
+    (!sizes.is_empty()).then(|| PER_MEDIAN * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// Which instants of `track` lie beside one whose direction is not settled, or beside the beginning of a recording, or where the

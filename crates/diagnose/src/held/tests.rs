@@ -70,7 +70,7 @@ fn what_is_left_is_a_root_mean_square_over_what_counts() {
 
 #[test]
 fn what_is_typically_left_does_not_care_for_a_few_stretches() {
-    assert!((typical_n(&trace_of([1e5; 4], [0.5, -40.0, 1.0, 1e3])) - PER_MEDIAN).abs() < 1e-12);
+    assert!((typical_n(&trace_of([1e5; 4], [0.5, -40.0, 1.0, 1e3])) - 1.4826).abs() < 1e-12);
     assert_eq!(typical_n(&Trace { settled: vec![false; 4], ..trace_of([1e5; 4], [0.0; 4]) }), 0.0);
 }
 

@@ -139,8 +139,7 @@ impl Unturned {
                 states[still.end..still.end + unmoved].fill(after);
             }
         }
-        let path = Path::of(time_s, period_s, &shortening, thresholds, &turns_of(&states, &pushed));
-        let path = Some(path);
+        let path = Some(Path::of(time_s, period_s, &shortening, thresholds, &turns_of(&states, &pushed)));
         let reach = slow.long;
         let pushed = if thresholds.standstill == Standstill::Held { Vec::new() } else { pushed };
         Self { states, carried, pushed, path, reach }
