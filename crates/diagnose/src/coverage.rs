@@ -43,6 +43,22 @@ impl Coverage {
         self.cell(pressure_pa, length_m).is_some_and(|(row, column)| self.visited[row * SIDE + column])
     }
 
+    /// The samples of `trace` at which they have been.
+    pub(crate) fn within(&self, trace: &Trace) -> Trace {
+        let kept: Vec<usize> =
+            (0..trace.time_s.len()).filter(|&at| self.holds(trace.pressure_pa[at], trace.length_m[at])).collect();
+        let of = |values: &[f64]| kept.iter().map(|&at| values[at]).collect::<Vec<f64>>();
+        Trace {
+            time_s: of(&trace.time_s),
+            pressure_pa: of(&trace.pressure_pa),
+            length_m: of(&trace.length_m),
+            force_n: of(&trace.force_n),
+            model_n: of(&trace.model_n),
+            direction: of(&trace.direction),
+            settled: kept.iter().map(|&at| trace.settled[at]).collect(),
+        }
+    }
+
     fn cell(&self, pressure_pa: f64, length_m: f64) -> Option<(usize, usize)> {
         let along = |value: f64, (low, high): (f64, f64)| {
             let cell = (CELLS as f64 * (value - low) / (high - low).max(f64::MIN_POSITIVE)).floor();

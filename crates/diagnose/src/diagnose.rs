@@ -29,6 +29,7 @@ use crate::problem::DiagnosisProblem;
 use crate::rig;
 use crate::search::Limits;
 use crate::standing::{Standing, unexplained};
+use crate::typical::Typical;
 use crate::uncertainty::{Uncertainty, correlated_instants};
 use crate::verdict::Sizes;
 use crate::written::{Fit, Written};
@@ -91,6 +92,8 @@ pub struct Diagnosis {
     pub next_experiment: Option<(NextExperiment, Setpoints)>,
     /// Sizes that the verdict rests on.
     pub sizes: Sizes,
+    /// Whether what is written typically leaves more of what was fitted or held out than noise accounts for.
+    pub typically_misses: bool,
     /// Base model refitted to the estimation recordings.
     pub base: ForceModel,
     /// Base model and effects.
@@ -244,6 +247,10 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     // Where nothing is named, terms are compared with the base model.
     let without_terms =
         discovery.as_ref().filter(|_| !written.effects.is_empty()).map(|discovery| discovery.without_terms.clone());
+    let augmented = rig::beside(&rig, &written.model());
+    let typically_misses =
+        Typical::of(&augmented, &estimation, &holdout, direction)?.is_missed(question.limits.matters_above_n);
+    let verdict = if verdict == Verdict::Consistent && typically_misses { Verdict::Unexplained } else { verdict };
     let mut regions =
         if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &question.paths()) };
     if let Some(knocks) = &knocks {
@@ -263,7 +270,6 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
-    let augmented = rig::beside(&rig, &written.model());
     let Written { mut entries, effects, empirical, kept, .. } = written;
     let kept_to_fitted = kept.map(|kept| KeptToFitted { everywhere: rig::beside(&rig, &kept.everywhere), ..kept });
     entries.splice(0..0, rig.iter().map(rig::entry));
@@ -288,6 +294,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         isolability,
         next_experiment,
         sizes,
+        typically_misses,
         base: better_base(&estimation, &model, &found.base.state.model)?,
         augmented,
         kept_to_fitted,

@@ -13,7 +13,7 @@ use crate::coverage::Coverage;
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;
 use crate::nuisance::TARE_N;
-use crate::turns;
+use crate::typical;
 
 /// Times what is left of the fitted recordings that may be left of a held-out one, whatever the reason. A recording or two do
 /// not say what eq. 11 is elsewhere (2.6 times was seen of a healthy muscle), and memory goes on from recording to recording.
@@ -59,7 +59,7 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
         let own_n = fitted_n.max(floor_n).max(diagnosis.sizes.sensors_n);
         let trace = trace_augmented(prepared, &model, diagnosis.model.direction, index)?;
         let path = &prepared.recording.path;
-        let within = within(&trace, &coverage);
+        let within = coverage.within(&trace);
         let share_within = within.time_s.len() as f64 / trace.time_s.len().max(1) as f64;
         if share_within < 1.0 - TOLD_OUTSIDE {
             held.noticed.push(format!(
@@ -81,7 +81,8 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
         let instrument = reading::said(&readings);
         let all_n = left_n;
         let left_n = if instrument.is_some() { left_n } else { left_n.min(rmse_n(&within)) };
-        let is_of_another = is_of_another(left_n, typical_n(&within), own_n, diagnosis.worst_foretold_n);
+        let is_of_another =
+            is_of_another(left_n, typical::left_n(std::slice::from_ref(&within)), own_n, diagnosis.worst_foretold_n);
         let reason = match instrument {
             Some(instrument) => instrument,
             None if is_of_another && share_within >= LEAST_WITHIN => {
@@ -113,34 +114,12 @@ fn is_tare(reading: &Reading) -> bool {
     matches!(reading.wrong, Wrong::Zero(zero_n) if reading.channel == "force" && zero_n.abs() <= TARES * TARE_N)
 }
 
-/// The samples of `trace` that `coverage` holds.
-fn within(trace: &Trace, coverage: &Coverage) -> Trace {
-    let kept: Vec<usize> =
-        (0..trace.time_s.len()).filter(|&at| coverage.holds(trace.pressure_pa[at], trace.length_m[at])).collect();
-    let of = |values: &[f64]| kept.iter().map(|&at| values[at]).collect::<Vec<f64>>();
-    Trace {
-        time_s: of(&trace.time_s),
-        pressure_pa: of(&trace.pressure_pa),
-        length_m: of(&trace.length_m),
-        force_n: of(&trace.force_n),
-        model_n: of(&trace.model_n),
-        direction: of(&trace.direction),
-        settled: kept.iter().map(|&at| trace.settled[at]).collect(),
-    }
-}
-
 /// Root mean square of what the model of `trace` leaves of its counted samples, in N.
 fn rmse_n(trace: &Trace) -> f64 {
     let counted = (0..trace.time_s.len()).filter(|&at| trace.settled[at]);
     let (sum, n) =
         counted.fold((0.0, 0_u32), |(sum, n), at| (sum + (trace.force_n[at] - trace.model_n[at]).powi(2), n + 1));
     (sum / f64::from(n.max(1))).sqrt()
-}
-
-/// What the model of `trace` typically leaves of its counted samples, in N; nothing where none counts.
-fn typical_n(trace: &Trace) -> f64 {
-    let counted = (0..trace.time_s.len()).filter(|&at| trace.settled[at]);
-    turns::typical_n(counted.map(|at| trace.force_n[at] - trace.model_n[at])).unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -55,6 +55,7 @@ pub mod traces;
 pub mod track;
 pub mod trial;
 mod turns;
+mod typical;
 pub mod uncertainty;
 pub mod verdict;
 mod veto;

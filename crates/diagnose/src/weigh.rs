@@ -10,11 +10,9 @@ use crate::discover;
 use crate::error::DiagnoseError;
 use crate::held_error::WORSE;
 use crate::nuisance::MAP_ID;
+use crate::typical::FOLLOWED_WITHIN;
 use crate::{held, words};
 
-/// Times the sensors' noise that may be left of what was held out, over all samples, where nothing was named: as much again as the
-/// noise itself.
-const FOLLOWED_WITHIN: f64 = 2.0;
 /// Times the sensors' noise that may be left of what is called explained.
 const EXPLAINED_WITHIN: f64 = 1.5;
 
@@ -91,6 +89,7 @@ impl Diagnosis {
         let as_written = self.sizes.static_n.is_none().then_some(&agreement.holdout);
         let held = as_written.unwrap_or(&agreement.base_holdout).together.as_ref();
         self.verdict == Verdict::Unexplained
+            && !self.typically_misses
             && self.effects.is_empty()
             && self.empirical.is_none()
             && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)

@@ -77,6 +77,15 @@ fn hold_outs_that_the_base_follows_make_what_is_unexplained_consistent() {
 }
 
 #[test]
+fn what_is_typically_missed_stays_unexplained_whatever_hold_outs_say() {
+    let found = weighed(|found, agreement| {
+        (found.verdict, found.typically_misses) = (Verdict::Unexplained, true);
+        base_leaves(agreement, 1.0);
+    });
+    assert_eq!(found.verdict, Verdict::Unexplained);
+}
+
+#[test]
 fn a_smooth_map_follows_hold_outs_for_a_muscle_until_it_takes_more_than_any_muscle_has() {
     let unexplained = |static_n| {
         weighed(|found, agreement| {
