@@ -92,7 +92,7 @@ pub struct Diagnosis {
     pub next_experiment: Option<(NextExperiment, Setpoints)>,
     /// Sizes that the verdict rests on.
     pub sizes: Sizes,
-    /// Whether what is written typically leaves more of what was fitted or held out than noise accounts for.
+    /// Whether, where nothing is named, what is written typically leaves more of what was fitted or held out than noise accounts for.
     pub typically_misses: bool,
     /// Base model refitted to the estimation recordings.
     pub base: ForceModel,
@@ -248,8 +248,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let without_terms =
         discovery.as_ref().filter(|_| !written.effects.is_empty()).map(|discovery| discovery.without_terms.clone());
     let augmented = rig::beside(&rig, &written.model());
-    let typically_misses =
-        Typical::of(&augmented, &estimation, &holdout, direction)?.is_missed(question.limits.matters_above_n);
+    let typically_misses = written.effects.is_empty()
+        && Typical::of(&augmented, &estimation, &holdout, direction)?.is_missed(question.limits.matters_above_n);
     let verdict = if verdict == Verdict::Consistent && typically_misses { Verdict::Unexplained } else { verdict };
     let mut regions =
         if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &question.paths()) };

@@ -10,6 +10,7 @@ use pam_identification::prepare::Prepared;
 use pam_identification::trace::{Trace, trace_augmented};
 use pam_muscle::direction::Thresholds;
 use pam_muscle::effects::AugmentedModel;
+use rayon::prelude::*;
 
 use crate::coverage::Coverage;
 use crate::turns;
@@ -41,7 +42,7 @@ impl Typical {
         thresholds: Thresholds,
     ) -> Result<Self, IdentifyError> {
         let traces = |recordings: &[Prepared], model: &AugmentedModel| -> Result<Vec<Trace>, IdentifyError> {
-            let each = recordings.iter().enumerate();
+            let each = recordings.par_iter().enumerate();
             each.map(|(index, prepared)| trace_augmented(prepared, model, thresholds, index)).collect()
         };
         let floor_n = |recordings: &[Prepared]| {

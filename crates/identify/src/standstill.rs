@@ -9,7 +9,7 @@ use std::io;
 use std::ops::Range;
 
 use pam_artifact::model::StandstillFit;
-use pam_muscle::direction::{Direction, Driver, Standstill, Thresholds};
+use pam_muscle::direction::{Direction, Driver, Law, Standstill, Thresholds};
 use pam_muscle::force::Form;
 use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
 use pam_optim::gathered::Gathered;
@@ -78,21 +78,12 @@ pub fn judge(
         } else {
             None
         };
-        let fitted = laws.into_par_iter().map(|standstill| {
-            let thresholds = Thresholds { standstill, ..thresholds };
-            let found: Result<Vec<Direction>, IdentifyError> = recordings
-                .iter()
-                .map(|prepared| {
-                    Direction::of(&prepared.recording, thresholds, Driver::Motion)
-                        .map_err(|reason| unreadable(prepared, reason))
-                })
-                .collect();
-            let found = found?;
-            let directions: Vec<&Direction> = found.iter().collect();
-            let left = mean_square(recordings, columns, &directions, Counts::Settled(stride), late.map(Vec::as_slice))?;
-            Ok(StandstillFit { standstill, rmse_n: left.sqrt() })
-        });
-        fitted.collect()
+        let under = |standstill: &Standstill| Law { standstill: *standstill, ..Law::of(thresholds) };
+        let asked: Vec<Law> = laws.iter().map(under).collect();
+        let counts = Counts::Settled(stride);
+        let left = mean_squares(recordings, columns, thresholds, &asked, counts, late.map(Vec::as_slice))?;
+        let fitted = |(standstill, left): (Standstill, f64)| StandstillFit { standstill, rmse_n: left.sqrt() };
+        Ok(laws.into_iter().zip(left).map(fitted).collect())
     })
 }
 
@@ -183,35 +174,19 @@ pub fn turning(
     finest_m: f64,
 ) -> Result<Thresholds, IdentifyError> {
     let first = turning_rows(recordings.len());
-    let travels = travels();
+    let laws = turning_laws(thresholds);
     let mut judged = Vec::new();
     for length_m in turning_plays_m(thresholds, finest_m) {
         let thresholds = Thresholds { length_m, ..thresholds };
-        let counts = Counts::First(first);
-        let found: Result<Vec<Vec<Direction>>, IdentifyError> = recordings
-            .par_iter()
-            .map(|prepared| {
-                let n_rows = counts.rows(prepared);
-                Direction::of_first_turning(n_rows, &prepared.recording, thresholds, Driver::Motion, &travels)
-                    .map_err(|reason| unreadable(prepared, reason))
-            })
-            .collect();
-        let found = found?;
-        let left: Result<Vec<f64>, IdentifyError> = (0..travels.len())
-            .into_par_iter()
-            .map(|index| {
-                let directions: Vec<&Direction> = found.iter().map(|directions| &directions[index]).collect();
-                mean_square(recordings, columns, &directions, counts, None)
-            })
-            .collect();
-        judged.extend(left?);
+        judged.extend(mean_squares(recordings, columns, thresholds, &laws, Counts::First(first), None)?);
     }
     Ok(turning_of(&judged, thresholds, finest_m))
 }
 
-/// Travels that are compared (`held_m`, `turn_m`), none first.
-pub fn travels() -> Vec<(f64, f64)> {
-    HELD_M.iter().flat_map(|&held_m| TURNS_M.map(|turn_m| (held_m, turn_m))).collect()
+/// Laws that are compared after a reversal, that without travels first; at a standstill that of `thresholds`.
+pub fn turning_laws(thresholds: Thresholds) -> Vec<Law> {
+    let travels = HELD_M.iter().flat_map(|&held_m| TURNS_M.map(|turn_m| (held_m, turn_m)));
+    travels.map(|(held_m, turn_m)| Law { held_m, turn_m, ..Law::of(thresholds) }).collect()
 }
 
 /// Rows of each of `n_recordings` that travels are compared on, its first ones.
@@ -226,12 +201,12 @@ pub fn turning_plays_m(thresholds: Thresholds, finest_m: f64) -> Vec<f64> {
 }
 
 /// `thresholds` with the play and the travels that leave least, of the mean squares `left` for every one of the
-/// [plays](turning_plays_m) and, within it, of the [`travels`].
+/// [plays](turning_plays_m) and, within it, of the [laws](turning_laws).
 pub fn turning_of(left: &[f64], thresholds: Thresholds, finest_m: f64) -> Thresholds {
-    let travels = travels();
-    let tried = turning_plays_m(thresholds, finest_m).into_iter().flat_map(|length_m| {
-        travels.iter().map(move |&(held_m, turn_m)| Thresholds { length_m, held_m, turn_m, ..thresholds })
-    });
+    let laws = turning_laws(thresholds);
+    let tried = turning_plays_m(thresholds, finest_m)
+        .into_iter()
+        .flat_map(|length_m| laws.iter().map(move |law| law.within(Thresholds { length_m, ..thresholds })));
     let judged: Vec<(f64, Thresholds)> = left.iter().copied().zip(tried).collect();
     let most = (1.0 - HARDLY) * judged[0].0;
     let best = judged.into_iter().filter(|(left, _)| *left < most).min_by(|one, other| one.0.total_cmp(&other.0));
@@ -267,23 +242,34 @@ fn unreadable(prepared: &Prepared, reason: io::Error) -> IdentifyError {
     IdentifyError::Samples { path: prepared.recording.path.clone(), reason }
 }
 
-/// What the columns leave of the force with the `directions` of the recordings, in N²; beside a pressure that is `late`, of which
-/// that is the change around every row of every recording, where it is given.
-fn mean_square(
+/// What the columns leave of the force under each of the `laws`, in N²; beside a pressure that is `late`, of which that is the change
+/// around every row of every recording, where it is given.
+fn mean_squares(
     recordings: &[&Prepared],
     columns: &ForceColumns,
-    directions: &[&Direction],
+    thresholds: Thresholds,
+    laws: &[Law],
     counts: Counts,
     late: Option<&[Vec<f64>]>,
-) -> Result<f64, IdentifyError> {
-    let mut total = Summary::new(N_COLUMNS + usize::from(late.is_some()));
-    for (index, (prepared, direction)) in recordings.iter().zip(directions).enumerate() {
+) -> Result<Vec<f64>, IdentifyError> {
+    let summaries = |(index, prepared): (usize, &&Prepared)| -> io::Result<Vec<Summary>> {
+        let n_rows = counts.rows(prepared);
+        let directions = Direction::of_first_under(n_rows, &prepared.recording, thresholds, Driver::Motion, laws)?;
         let change_pa = late.map(|late| late[index].as_slice());
-        let part = condensed(prepared, 0..counts.rows(prepared), columns, direction, counts, change_pa)
-            .map_err(|reason| unreadable(prepared, reason))?;
-        total.merge(&part);
+        let summary = |direction: &Direction| condensed(prepared, 0..n_rows, columns, direction, counts, change_pa);
+        directions.par_iter().map(summary).collect()
+    };
+    let each: Result<Vec<Vec<Summary>>, IdentifyError> = recordings
+        .par_iter()
+        .enumerate()
+        .map(|(index, prepared)| summaries((index, prepared)).map_err(|reason| unreadable(prepared, reason)))
+        .collect();
+    let mut totals = vec![Summary::new(N_COLUMNS + usize::from(late.is_some())); laws.len()];
+    for recording in each? {
+        totals.iter_mut().zip(&recording).for_each(|(total, part)| total.merge(part));
     }
-    Ok(total.residual_floor_square_sum() / total.n_rows().max(1) as f64)
+    let left = |total: &Summary| total.residual_floor_square_sum() / total.n_rows().max(1) as f64;
+    Ok(totals.iter().map(left).collect())
 }
 
 /// The columns of `rows` of a recording with a `direction` of its own, beside the force.

@@ -25,7 +25,7 @@ use crate::error::IdentifyError;
 use crate::evaluate::{floor_stride, noise_squares, tally};
 use crate::faults::{shaken, spikes};
 use crate::prepare::Prepared;
-use crate::standstill::{Counts, changes_pa, condensed, travels};
+use crate::standstill::{Counts, changes_pa, condensed, turning_laws};
 
 /// What all places know.
 pub(super) struct Shared<'a> {
@@ -317,7 +317,8 @@ fn turning(
     tile.leave_out(&mut excluded);
     let prepared = tile.prepared(quality, excluded);
     for &length_m in plays_m {
-        let found = tile.directions(Thresholds { length_m, ..thresholds }, Carried::UNKNOWN, &travels(), until)?;
+        let found =
+            tile.directions(Thresholds { length_m, ..thresholds }, Carried::UNKNOWN, &turning_laws(thresholds), until)?;
         let of_travels: io::Result<Vec<Triangle>> = found
             .par_iter()
             .map(|(direction, _)| {

@@ -124,7 +124,7 @@ pub fn advance(
             Ok(Step::Ask(Box::new(agreement)))
         }
         Question::Travels { thresholds, plays_m, .. } => {
-            let left = merged(&found, plays_m.len() * standstill::travels().len())?;
+            let left = merged(&found, plays_m.len() * standstill::turning_laws(thresholds).len())?;
             let left: Vec<f64> = left.iter().map(mean_square).collect();
             let checked = conclude::checked(request, &agreement)?;
             let (_, finest_m) = checked.thresholds();

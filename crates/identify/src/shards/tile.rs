@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use pam_artifact::agreement::CutRecording;
 use pam_artifact::summary::{Ends, Rows};
-use pam_muscle::direction::{Carried, Direction, Driver, Piece, Thresholds};
+use pam_muscle::direction::{Carried, Direction, Driver, Law, Piece, Thresholds};
 use pam_recording::quality::RecordingQuality;
 use pam_recording::{CHUNK_ROWS, Recording, Samples};
 
@@ -93,7 +93,7 @@ impl<'a> Tile<'a> {
         self.cut.quality.as_ref()
     }
 
-    /// Directions after `carried`, for each of the `travels`, with where they end; of the rows before `until` alone.
+    /// Directions after `carried`, under each of the `laws`, with where they end; of the rows before `until` alone.
     ///
     /// # Errors
     /// Where samples cannot be read back.
@@ -101,7 +101,7 @@ impl<'a> Tile<'a> {
         &self,
         thresholds: Thresholds,
         carried: Carried,
-        travels: &[(f64, f64)],
+        laws: &[Law],
         until: usize,
     ) -> io::Result<Vec<(Direction, Ends)>> {
         let begin = self.begin(carried);
@@ -114,7 +114,7 @@ impl<'a> Tile<'a> {
             .map(|rows| Piece { carried: if rows.start == self.owned.start { begin } else { Carried::UNKNOWN }, rows })
             .collect();
         let n_rows = self.recording.samples.n_rows();
-        let found = Direction::of_pieces(n_rows, &self.recording, &pieces, thresholds, Driver::Motion, travels)?;
+        let found = Direction::of_pieces(n_rows, &self.recording, &pieces, thresholds, Driver::Motion, laws)?;
         let ends = |(direction, carried): (Direction, Carried)| {
             let moves = direction.knows();
             (direction, Ends { carried, moves })
@@ -132,8 +132,8 @@ impl<'a> Tile<'a> {
         carried: Carried,
         at_rest: bool,
     ) -> io::Result<(Direction, Ends)> {
-        let travels = [(thresholds.held_m, thresholds.turn_m)];
-        let (direction, ends) = self.directions(thresholds, carried, &travels, self.owned.end)?.remove(0);
+        let laws = [Law::of(thresholds)];
+        let (direction, ends) = self.directions(thresholds, carried, &laws, self.owned.end)?.remove(0);
         let mut direction = if at_rest { direction.at_rest() } else { direction };
         self.leave_out(&mut direction);
         Ok((direction, ends))

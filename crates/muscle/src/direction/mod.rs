@@ -29,6 +29,7 @@ use std::io;
 use std::ops::Range;
 
 use pam_recording::{CHUNK_ROWS, Chunk, Recording};
+use rayon::prelude::*;
 
 mod carried;
 mod rest;
@@ -37,12 +38,12 @@ mod thresholds;
 mod travel;
 mod turn;
 
-use states::{Bounds, State, Unturned, moving_average, slide};
+use states::{Bounds, State, Stretch, moving_average, slide};
 
 pub use carried::{Carried, Piece};
 pub use rest::STANDSTILL_S;
 pub use states::WINDOW_S;
-pub use thresholds::{Driver, Standstill, Thresholds};
+pub use thresholds::{Driver, Law, Standstill, Thresholds};
 
 /// Rows that are worked on at a time, from the beginning of a segment on; across a border between two nothing is remembered but a
 /// state.
@@ -79,32 +80,31 @@ impl Direction {
     /// # Errors
     /// Where the samples cannot be read back.
     pub fn of_first(n_rows: usize, recording: &Recording, thresholds: Thresholds, driver: Driver) -> io::Result<Self> {
-        let travels = [(thresholds.held_m, thresholds.turn_m)];
-        Ok(Self::of_first_turning(n_rows, recording, thresholds, driver, &travels)?.remove(0))
+        Ok(Self::of_first_under(n_rows, recording, thresholds, driver, &[Law::of(thresholds)])?.remove(0))
     }
 
-    /// The same with each of the `travels` (`held_m`, `turn_m`) in place of those of `thresholds`. All else is found once.
+    /// The same under each of the `laws` in place of that of `thresholds`. All else is found once.
     ///
     /// # Errors
     /// Where the samples cannot be read back.
-    pub fn of_first_turning(
+    pub fn of_first_under(
         n_rows: usize,
         recording: &Recording,
         thresholds: Thresholds,
         driver: Driver,
-        travels: &[(f64, f64)],
+        laws: &[Law],
     ) -> io::Result<Vec<Self>> {
         let pieces = recording.segments.iter().map(|segment| Piece {
             rows: segment.start.min(n_rows)..segment.end.min(n_rows),
             carried: Carried::UNKNOWN,
         });
-        let all = Self::of_pieces(n_rows, recording, &pieces.collect::<Vec<_>>(), thresholds, driver, travels)?;
+        let all = Self::of_pieces(n_rows, recording, &pieces.collect::<Vec<_>>(), thresholds, driver, laws)?;
         // What nothing moves from beginning to end counts without friction, or nothing would.
         let counted = |(direction, _): (Self, Carried)| if direction.knows() { direction } else { direction.at_rest() };
         Ok(all.into_iter().map(counted).collect())
     }
 
-    /// Directions of `pieces` of the first `n_rows` of `recording`, ascending, with what each of the `travels` carries on from the
+    /// Directions of `pieces` of the first `n_rows` of `recording`, ascending, with what each of the `laws` carries on from the
     /// last of them. Rows beside them are unsettled. A piece that goes on in a segment begins a multiple of [`STRETCH_ROWS`] after
     /// it began, and ends there or with it: then its states are, to the bit, those that the whole segment has there.
     ///
@@ -116,7 +116,7 @@ impl Direction {
         pieces: &[Piece],
         thresholds: Thresholds,
         driver: Driver,
-        travels: &[(f64, f64)],
+        laws: &[Law],
     ) -> io::Result<Vec<(Self, Carried)>> {
         let empty = || Self {
             states: Vec::with_capacity(n_rows),
@@ -124,7 +124,7 @@ impl Direction {
             known: Vec::with_capacity(n_rows),
             left_out: Vec::new(),
         };
-        let mut all: Vec<(Self, Carried)> = travels.iter().map(|_| (empty(), Carried::UNKNOWN)).collect();
+        let mut all: Vec<(Self, Carried)> = laws.iter().map(|_| (empty(), Carried::UNKNOWN)).collect();
         for Piece { rows: piece, carried } in pieces {
             for (direction, ends) in &mut all {
                 direction.skip_to(piece.start);
@@ -133,19 +133,14 @@ impl Direction {
             for start in piece.clone().step_by(STRETCH_ROWS) {
                 let end = (start + STRETCH_ROWS).min(piece.end);
                 let (time_s, pressure_pa, length_m) = rows(recording, &(start..end))?;
-                let unturned = |before| Unturned::of(&time_s, &pressure_pa, &length_m, thresholds, driver, before);
-                // What came before this stretch may have turned over within one travel and not within another.
-                let mut begun: Option<(Bounds, Unturned)> = None;
-                for ((direction, before), &(held_m, turn_m)) in all.iter_mut().zip(travels) {
-                    let found = match begun.take() {
-                        Some((bounds, found)) if bounds == before.bounds() => found,
-                        _ => unturned(before.bounds()),
-                    };
-                    let stretch = found.turned(Thresholds { held_m, turn_m, ..thresholds });
-                    begun = Some((before.bounds(), found));
-                    *before = stretch.last().map_or(*before, |state| Carried::of(state.bounds));
-                    direction.extend(&stretch);
+                if end - start < 2 {
+                    all.iter_mut().for_each(|(direction, before)| {
+                        direction.extend(&vec![State { bounds: before.bounds(), is_settled: true }; end - start]);
+                    });
+                    continue;
                 }
+                let stretch = Stretch::of(&time_s, &pressure_pa, &length_m, thresholds, driver);
+                go_on(&stretch, thresholds, laws, &mut all);
             }
         }
         all.iter_mut().for_each(|(direction, _)| direction.skip_to(n_rows));
@@ -282,6 +277,29 @@ impl Direction {
     pub fn n_reversals(&self) -> usize {
         self.states.windows(2).filter(|pair| pair[0].signum() * pair[1].signum() < 0).count()
     }
+}
+
+/// Lets the directions under every one of the `laws` go on along a `stretch`, each from what it carries. What is the same for several
+/// of them is found once.
+fn go_on(stretch: &Stretch<'_>, thresholds: Thresholds, laws: &[Law], all: &mut [(Direction, Carried)]) {
+    type Going<'a> = (&'a Law, &'a mut (Direction, Carried));
+    let mut groups: Vec<(Standstill, Bounds, Vec<Going<'_>>)> = Vec::new();
+    for (law, going) in laws.iter().zip(all) {
+        let (standstill, carried) = (law.standstill, going.1.bounds());
+        match groups.iter_mut().find(|group| group.0 == standstill && group.1 == carried) {
+            Some(group) => group.2.push((law, going)),
+            None => groups.push((standstill, carried, vec![(law, going)])),
+        }
+    }
+    groups.into_par_iter().for_each(|(standstill, carried, going)| {
+        let states = stretch.states(standstill, carried);
+        let path = stretch.path(&states);
+        going.into_par_iter().for_each(|(law, (direction, before))| {
+            let turned = stretch.turned(&states, path.as_deref(), law.within(thresholds), carried);
+            *before = turned.last().map_or(*before, |state| Carried::of(state.bounds));
+            direction.extend(&turned);
+        });
+    });
 }
 
 /// Calls `visit` with every chunk that has some of `rows` of `recording`, and which of its own rows those are.

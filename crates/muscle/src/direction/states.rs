@@ -2,6 +2,7 @@
 //! a turn say of it.
 
 use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::rest::{never_rests, pushed, standstills};
 use super::thresholds::{Driver, Standstill, Thresholds};
@@ -65,73 +66,103 @@ pub(super) struct State {
     pub(super) is_settled: bool,
 }
 
-/// States of consecutive rows without a gap before friction takes its travels to turn over, and what says how it does.
-pub(super) struct Unturned {
-    states: Vec<State>,
-    /// The state before them.
-    carried: Bounds,
-    /// Where the pressure moves friction while the length rests.
+/// Consecutive rows without a gap, and what they say whatever friction does at a standstill.
+pub(super) struct Stretch<'a> {
+    time_s: &'a [f64],
+    pressure_pa: &'a [f64],
+    period_s: f64,
+    thresholds: Thresholds,
+    driver: Driver,
+    shortening: Vec<f64>,
+    /// Moving averages, and half of their window in rows.
+    contraction: Vec<f64>,
+    pressure: Vec<f64>,
+    half: usize,
+    resting: Vec<Range<usize>>,
+    /// Where the pressure moves while the length rests.
     pushed: Vec<Range<usize>>,
-    /// Travels along which friction turns over, in m; none where no length says how it does.
-    path: Option<Path>,
-    /// Rows within which a turn lies.
-    reach: usize,
+    /// Half of the window that a slow-down is measured against, in rows: within as many a turn lies.
+    long: usize,
+    /// Paths by their turns, which most laws have in common.
+    paths: Mutex<Vec<(Vec<usize>, Arc<Path>)>>,
 }
 
-impl Unturned {
-    /// Of rows after the state `carried`.
+impl<'a> Stretch<'a> {
+    /// Of at least two rows. Of `thresholds`, the plays count.
     pub(super) fn of(
-        time_s: &[f64],
-        pressure_pa: &[f64],
-        length_m: &[f64],
+        time_s: &'a [f64],
+        pressure_pa: &'a [f64],
+        length_m: &'a [f64],
         thresholds: Thresholds,
         driver: Driver,
-        carried: Bounds,
     ) -> Self {
-        let at_once = |states: Vec<State>| Self { states, carried, pushed: Vec::new(), path: None, reach: 0 };
         let n = time_s.len();
-        if n < 2 {
-            return at_once(vec![State { bounds: carried, is_settled: true }; n]);
-        }
         let period_s = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
         let half = ((0.5 * WINDOW_S / period_s).round() as usize).clamp(2, 50);
-        let mut marks = vec![0; n];
-        if driver == Driver::Pressure {
-            let smooth = moving_average(pressure_pa, half);
-            play(&smooth, pressure_pa, thresholds.pressure_pa, half, carried.sign(), &mut marks);
-            return at_once(from_marks(&marks, carried));
-        }
-        let shortening: Vec<f64> = length_m.iter().map(|length| -length).collect();
-        let contraction = moving_average(&shortening, half);
-        play(&contraction, &shortening, thresholds.length_m, half, carried.sign(), &mut marks);
+        let long = long_window(period_s, half);
         let pressure = moving_average(pressure_pa, half);
-        let mut resting = standstills(time_s, &contraction, thresholds.length_m);
-        resting
-            .retain(|still| !never_rests(&shortening[still.clone()], thresholds.length_m, NOISE * thresholds.length_m));
-        // Deviation of an average of the length at rest.
-        let noise_m = NOISE * thresholds.length_m / ((2 * half + 1) as f64).sqrt();
-        let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
-        let pushed: Vec<Range<usize>> = (0..resting.len()).filter_map(push).collect();
+        let nothing = || (Vec::new(), Vec::new());
+        let ((shortening, contraction), (resting, pushed)) = match driver {
+            Driver::Pressure => (nothing(), (Vec::new(), Vec::new())),
+            Driver::Motion => {
+                let shortening: Vec<f64> = length_m.iter().map(|length| -length).collect();
+                let contraction = moving_average(&shortening, half);
+                let (play_m, noise_m) = (thresholds.length_m, NOISE * thresholds.length_m);
+                let mut resting = standstills(time_s, &contraction, play_m);
+                resting.retain(|still| !never_rests(&shortening[still.clone()], play_m, noise_m));
+                // Deviation of an average of the length at rest.
+                let noise_m = noise_m / ((2 * half + 1) as f64).sqrt();
+                let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
+                let pushed = (0..resting.len()).filter_map(push).collect();
+                ((shortening, contraction), (resting, pushed))
+            }
+        };
+        Self {
+            time_s,
+            pressure_pa,
+            period_s,
+            thresholds,
+            driver,
+            shortening,
+            contraction,
+            pressure,
+            half,
+            resting,
+            pushed,
+            long,
+            paths: Mutex::default(),
+        }
+    }
+
+    /// States under a law of `standstill`, after the state `carried`, before friction takes its travels to turn over.
+    pub(super) fn states(&self, standstill: Standstill, carried: Bounds) -> Vec<State> {
+        let Self { half, thresholds, pressure, .. } = self;
+        let mut marks = vec![0; self.time_s.len()];
+        if self.driver == Driver::Pressure {
+            play(pressure, self.pressure_pa, thresholds.pressure_pa, *half, carried.sign(), &mut marks);
+            return from_marks(&marks, carried);
+        }
+        play(&self.contraction, &self.shortening, thresholds.length_m, *half, carried.sign(), &mut marks);
         let follows = |over_pa: f64, share: f64| over_pa <= 2.0 * thresholds.pressure_pa && share >= 1.0;
-        if let Standstill::Slides { over_pa, share } = thresholds.standstill
+        if let Standstill::Slides { over_pa, share } = standstill
             && follows(over_pa, share)
         {
-            for still in &pushed {
-                let rest = resting.iter().find(|rest| rest.contains(&still.start)).unwrap_or(still);
+            for still in &self.pushed {
+                let rest = self.resting.iter().find(|rest| rest.contains(&still.start)).unwrap_or(still);
                 let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried.sign() };
-                let (smooth, raw) = (&pressure[still.clone()], &pressure_pa[still.clone()]);
+                let (smooth, raw) = (&pressure[still.clone()], &self.pressure_pa[still.clone()]);
                 marks[still.clone()].fill(0);
-                play(smooth, raw, thresholds.pressure_pa, half, before, &mut marks[still.clone()]);
+                play(smooth, raw, thresholds.pressure_pa, *half, before, &mut marks[still.clone()]);
                 keep(still.end, rest.end + 2 * half, before, &mut marks);
             }
         }
-        let slow = Slow { contraction: &contraction, pressure: &pressure, half, long: long_window(period_s, half) };
-        slow.doubt(&resting, thresholds, &mut marks);
+        let slow = Slow { contraction: &self.contraction, pressure, half: *half, long: self.long };
+        slow.doubt(&self.resting, *thresholds, &mut marks);
         let mut states = from_marks(&marks, carried);
-        if let Standstill::Slides { over_pa, share } = thresholds.standstill
+        if let Standstill::Slides { over_pa, share } = standstill
             && !follows(over_pa, share)
         {
-            for still in &pushed {
+            for still in &self.pushed {
                 let before = if still.start > 0 { states[still.start - 1].bounds } else { carried };
                 slide(&pressure[still.clone()], over_pa, share, before, &mut states[still.clone()]);
                 let after = states[still.end - 1];
@@ -139,17 +170,37 @@ impl Unturned {
                 states[still.end..still.end + unmoved].fill(after);
             }
         }
-        let path = Some(Path::of(time_s, period_s, &shortening, thresholds, &turns_of(&states, &pushed)));
-        let reach = slow.long;
-        let pushed = if thresholds.standstill == Standstill::Held { Vec::new() } else { pushed };
-        Self { states, carried, pushed, path, reach }
+        states
     }
 
-    /// The states where friction turns over within the travels of `thresholds`.
-    pub(super) fn turned(&self, thresholds: Thresholds) -> Vec<State> {
-        let mut states = self.states.clone();
-        if let Some(path) = &self.path {
-            turn_over(path, thresholds, self.reach, self.carried, &self.pushed, &mut states);
+    /// The path along which friction turns over after the turns of `states`; none where no length says how it does.
+    pub(super) fn path(&self, states: &[State]) -> Option<Arc<Path>> {
+        if self.driver == Driver::Pressure {
+            return None;
+        }
+        let turns = turns_of(states, &self.pushed);
+        let paths = || self.paths.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = paths().iter().find(|(of, _)| *of == turns).map(|(_, path)| Arc::clone(path));
+        Some(known.unwrap_or_else(|| {
+            let path = Path::of(self.time_s, self.period_s, &self.shortening, self.thresholds, &turns);
+            let path = Arc::new(path);
+            paths().push((turns, Arc::clone(&path)));
+            path
+        }))
+    }
+
+    /// `states`, which came after `carried`, where friction turns over along `path` within the travels of `thresholds`.
+    pub(super) fn turned(
+        &self,
+        states: &[State],
+        path: Option<&Path>,
+        thresholds: Thresholds,
+        carried: Bounds,
+    ) -> Vec<State> {
+        let mut states = states.to_vec();
+        if let Some(path) = path {
+            let pushed = if thresholds.standstill == Standstill::Held { &[][..] } else { &self.pushed };
+            turn_over(path, thresholds, self.long, carried, pushed, &mut states);
         }
         states
     }

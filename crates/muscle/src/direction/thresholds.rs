@@ -75,6 +75,32 @@ fn at_once() -> Standstill {
     Standstill::AT_ONCE
 }
 
+/// What friction does at a standstill and after a reversal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Law {
+    /// At a standstill.
+    pub standstill: Standstill,
+    /// Travel back from a reversal over which it keeps its sign, in m.
+    pub held_m: f64,
+    /// Travel after that in which it turns over, in m.
+    pub turn_m: f64,
+}
+
+impl Law {
+    /// That of `thresholds`.
+    pub fn of(thresholds: Thresholds) -> Self {
+        let Thresholds { standstill, held_m, turn_m, .. } = thresholds;
+        Self { standstill, held_m, turn_m }
+    }
+
+    /// `thresholds` with this law in place of theirs.
+    #[must_use]
+    pub fn within(self, thresholds: Thresholds) -> Thresholds {
+        let Self { standstill, held_m, turn_m } = self;
+        Thresholds { standstill, held_m, turn_m, ..thresholds }
+    }
+}
+
 /// What the direction follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Driver {

@@ -8,7 +8,10 @@ fn states_of(
     driver: Driver,
     carried: Bounds,
 ) -> Vec<State> {
-    Unturned::of(time_s, pressure_pa, length_m, thresholds, driver, carried).turned(thresholds)
+    let stretch = Stretch::of(time_s, pressure_pa, length_m, thresholds, driver);
+    let states = stretch.states(thresholds.standstill, carried);
+    let path = stretch.path(&states);
+    stretch.turned(&states, path.as_deref(), thresholds, carried)
 }
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
