@@ -2,9 +2,9 @@
 
 use pam_artifact::diagnosis::Region;
 use pam_muscle::Coordinate;
-use pam_muscle::effects::{AugmentedModel, Kind};
+use pam_muscle::effects::{AugmentedModel, Kind, Role};
 
-use crate::regions::{Place, concentrated, from_event};
+use crate::regions::{By, Place, concentrated, from_event};
 use crate::search::{Found, chance};
 use crate::state::{Setting, State};
 use crate::structure::ProjectedResidual;
@@ -29,10 +29,13 @@ pub(crate) fn regions(setting: &Setting<'_>, found: &Found, paths: &[String]) ->
         let region = if guess.effect.kind() == Kind::Event {
             from_event(setting, guess, &excess, p_value, paths)
         } else {
-            // A base refitted without friction, rate or memory spreads what these do over all: where they act says it. What a
-            // static effect does is smooth nearly everywhere, and a mismatch where eq. 11 cannot follow.
-            let acts = if guess.effect.is_static() { excess } else { own_square(setting, state, index) };
-            concentrated(setting, &found.coordinates, coordinate, &acts, p_value, paths).map(|place| place.region)
+            // A base refitted without friction, rate or memory spreads what these do over all: where they act says it, and where
+            // the reading of a force alone is changed. What another static effect does is smooth nearly everywhere, and a mismatch
+            // where eq. 11 cannot follow.
+            let is_smooth = guess.effect.is_static() && guess.effect.role() != Role::Reads;
+            let (acts, by) =
+                if is_smooth { (excess, By::Refit) } else { (own_square(setting, state, index), By::Force) };
+            concentrated(setting, &found.coordinates, coordinate, (&acts, by), p_value, paths).map(|place| place.region)
         };
         regions.extend(region.map(|region| (log_ratio, region)));
     }
@@ -82,7 +85,8 @@ pub(crate) fn structured(setting: &Setting<'_>, state: &State, found: &Found, pa
         let excess: Vec<f64> = structure.values_n.iter().map(|value| value * value).collect();
         let looks = found.features.len() as f64;
         let p_value = (chance(&nothing.held_out, &structure.held_out) * looks).min(1.0);
-        if let Some(place) = concentrated(setting, &found.coordinates, coordinate, &excess, p_value, paths) {
+        if let Some(place) = concentrated(setting, &found.coordinates, coordinate, (&excess, By::Force), p_value, paths)
+        {
             places.push((gain, place));
         }
     }
