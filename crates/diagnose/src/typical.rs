@@ -78,6 +78,7 @@ pub(crate) fn left_n(traces: &[Trace]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::given::tests::{STROKES, artifact, recorded};
 
     fn typical(fitted_n: f64, held_n: f64) -> Typical {
         Typical { fitted_n, held_n, sensors_n: (0.5, 1.0) }
@@ -93,6 +94,17 @@ mod tests {
     #[test]
     fn what_a_user_says_that_matters_takes_the_place_of_as_much_again_as_the_noise() {
         assert!(!typical(1.9, 2.1).is_missed(Some(2.0)) && typical(2.2, 0.0).is_missed(Some(2.0)));
+    }
+
+    #[test]
+    fn a_hold_out_of_which_the_model_misses_some_newtons_everywhere_is_missed() {
+        let model = artifact();
+        let written = AugmentedModel::new(model.force_model(), Vec::new());
+        let is_missed = |gain: f64| {
+            let [fitted, held] = [1.0, gain].map(|gain| [recorded("strokes.csv", STROKES, &model, gain)]);
+            Typical::of(&written, &fitted, &held, model.direction).expect("residuals").is_missed(None)
+        };
+        assert!(!is_missed(1.0) && is_missed(1.05));
     }
 
     #[test]

@@ -132,9 +132,13 @@ pub(crate) fn statement(
             let anywhere = || numbers.static_n.map_or_else(|| "nowhere in particular".to_owned(), smooth);
             let place = unexplained.first().map_or_else(anywhere, place);
             if names.is_empty() {
+                // What was held out is why, where the fitted recordings are followed better.
+                let held = numbers.held_n.filter(|held_n| *held_n > numbers.before_n);
+                let held =
+                    held.map_or_else(String::new, |held_n| format!(", and {held_n:.2} N of held-out recordings"));
                 format!(
-                    "Unmodelled structure: refitted, the model leaves an RMSE of {:.2} N, where noise leaves {:.2} N, and no effect of \
-                     the catalogue explains it; it lies {place}.",
+                    "Unmodelled structure: refitted, the model leaves an RMSE of {:.2} N{held}, where noise leaves {:.2} N, and no \
+                     effect of the catalogue explains it; it lies {place}.",
                     numbers.before_n, numbers.floor_n
                 )
             } else {
@@ -215,7 +219,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_error_that_rises_is_not_said_to_fall() {
+    fn an_error_that_rises_is_not_said_to_fall_and_one_of_hold_outs_that_is_larger_is_said() {
         let numbers = |after_n| Numbers {
             before_n: 2.0,
             after_n,
@@ -228,6 +232,9 @@ mod tests {
         };
         assert!(numbers(1.5).gain(&[]).starts_with("with that the RMSE falls from 2.00 to 1.50 N, 58 % of the excess"));
         assert_eq!(numbers(2.5).gain(&[]), "with that the RMSE rises from 2.00 to 2.50 N");
+        let unexplained = |held_n| statement(Verdict::Unexplained, &[], &Numbers { held_n, ..numbers(2.0) }, &[], &[]);
+        assert!(unexplained(Some(5.0)).contains("an RMSE of 2.00 N, and 5.00 N of held-out recordings, where noise"));
+        assert_eq!(unexplained(Some(1.9)), unexplained(None));
         let beside = Numbers { with_map: true, n_terms: 2, ..numbers(1.5) };
         assert!(beside.gain(&[]).starts_with("with that, a smooth static map and empirical terms the RMSE falls"));
         assert_eq!(beside.share_unexplained(&[]), 1.0);
