@@ -22,11 +22,13 @@ const HANDS_HZ: RangeInclusive<u32> = 6..=13;
 const FREQUENCIES_HZ: RangeInclusive<u32> = 3..=16;
 /// The same as a share of the sampling rate, at most: four samples make a swing.
 const PER_SAMPLE: f64 = 0.25;
-/// Share of what the force has beside a straight line that one frequency must explain: a swing has one, noise has all.
+/// Share of what the force has beside a straight line that one frequency must explain: a swing has one, noise has all. Of 32 recordings that
+/// were held by a hand 26 are found, and 1 of 510 others; with 0.5, 26 and 3, with 0.85, 18 and none.
 const OF_ONE_FREQUENCY: f64 = 0.7;
 /// Windows, each half a window after the one before, that are shaken, at least.
 const LEAST_WINDOWS: usize = 2;
-/// Times its noise, and what the other channels explain, that a force swings by.
+/// Times its noise, and what the other channels explain, that a force swings by. With half of it 27 and 4 of those are found, with twice
+/// of it 20 and none.
 const TIMES_EXPLAINED: f64 = 2.0;
 /// Squared deviations of noise that the swing nearest to it has once in a thousand windows: `χ²` of two degrees of freedom.
 const SURELY: f64 = 13.8;
@@ -203,8 +205,8 @@ pub fn warning(recording: &Recording, quality: &RecordingQuality) -> io::Result<
     let lasts_s = shaken.iter().map(Range::len).sum::<usize>() as f64 * quality.period_s;
     Ok((!shaken.is_empty()).then(|| {
         format!(
-            "{}: the force swings for {lasts_s:.1} s while the length rests, as where a hand holds the muscle; these samples are \
-             not counted, as nobody knows which way friction acts in them; clamp it",
+            "{}: the force swings for {lasts_s:.1} s while the length rests, as where a hand holds the muscle or a pump beats; these \
+             samples are not counted, as nobody knows which way friction acts in them; clamp it",
             recording.path
         )
     }))
