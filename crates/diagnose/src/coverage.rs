@@ -93,6 +93,27 @@ mod tests {
     }
 
     #[test]
+    fn only_samples_where_recordings_have_been_are_kept() {
+        // Four samples, of which the last does not count.
+        let sampled = |pressure_pa: [f64; 4], missed_n: [f64; 4]| Trace {
+            time_s: vec![0.0, 0.1, 0.2, 0.3],
+            pressure_pa: pressure_pa.to_vec(),
+            length_m: vec![0.25, 0.24, 0.23, 0.22],
+            force_n: missed_n.map(|missed_n| 100.0 + missed_n).to_vec(),
+            model_n: vec![100.0; 4],
+            direction: vec![1.0; 4],
+            settled: vec![true, true, true, false],
+        };
+        let coverage = Coverage::of(&[sampled([1e5, 1.1e5, 1.2e5, 1.3e5], [0.0; 4])]);
+        let all = coverage.within(&sampled([1e5, 1.1e5, 1.2e5, 1.3e5], [1.0; 4]));
+        assert_eq!((all.time_s.len(), all.settled.len()), (4, 4));
+        let some = coverage.within(&sampled([1e5, 9e5, 1.2e5, 9e5], [1.0, 2.0, 3.0, 4.0]));
+        assert_eq!(some.time_s, [0.0, 0.2]);
+        assert_eq!(some.force_n, [101.0, 103.0]);
+        assert_eq!(some.settled, [true, true]);
+    }
+
+    #[test]
     fn one_held_length_covers_no_other() {
         let held: Vec<(f64, f64)> = (0..=100).map(|at| (f64::from(at) * 1e3, 0.2)).collect();
         let coverage = Coverage::of(&[trace(&held)]);

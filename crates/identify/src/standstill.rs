@@ -252,7 +252,7 @@ fn mean_squares(
     counts: Counts,
     late: Option<&[Vec<f64>]>,
 ) -> Result<Vec<f64>, IdentifyError> {
-    let summaries = |(index, prepared): (usize, &&Prepared)| -> io::Result<Vec<Summary>> {
+    let summaries = |index: usize, prepared: &Prepared| -> io::Result<Vec<Summary>> {
         let n_rows = counts.rows(prepared);
         let directions = Direction::of_first_under(n_rows, &prepared.recording, thresholds, Driver::Motion, laws)?;
         let change_pa = late.map(|late| late[index].as_slice());
@@ -262,7 +262,7 @@ fn mean_squares(
     let each: Result<Vec<Vec<Summary>>, IdentifyError> = recordings
         .par_iter()
         .enumerate()
-        .map(|(index, prepared)| summaries((index, prepared)).map_err(|reason| unreadable(prepared, reason)))
+        .map(|(index, prepared)| summaries(index, prepared).map_err(|reason| unreadable(prepared, reason)))
         .collect();
     let mut totals = vec![Summary::new(N_COLUMNS + usize::from(late.is_some())); laws.len()];
     for recording in each? {

@@ -50,17 +50,6 @@ fn another() -> ModelArtifact {
 }
 
 #[test]
-fn only_samples_where_fitted_recordings_have_been_are_judged_there() {
-    let coverage = Coverage::of(&[trace_of([1e5, 1.1e5, 1.2e5, 1.3e5], [0.0; 4])]);
-    let all = coverage.within(&trace_of([1e5, 1.1e5, 1.2e5, 1.3e5], [1.0; 4]));
-    assert_eq!((all.time_s.len(), all.settled.len()), (4, 4));
-    let some = coverage.within(&trace_of([1e5, 9e5, 1.2e5, 9e5], [1.0, 2.0, 3.0, 4.0]));
-    assert_eq!(some.time_s, [0.0, 0.2]);
-    assert_eq!(some.force_n, [101.0, 103.0]);
-    assert_eq!(some.settled, [true, true]);
-}
-
-#[test]
 fn what_is_left_is_a_root_mean_square_over_what_counts() {
     let trace = trace_of([1e5; 4], [3.0, -4.0, 0.0, 1e3]);
     assert!((rmse_n(&trace) - (25.0_f64 / 3.0).sqrt()).abs() < 1e-12);

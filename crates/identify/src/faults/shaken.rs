@@ -12,11 +12,12 @@ use std::ops::{Range, RangeInclusive};
 use pam_recording::quality::RecordingQuality;
 use pam_recording::{CHUNK_ROWS, Chunk, Recording};
 
-/// Windows that are looked at, in s: two swings of a hand, which trembles at 6 to 12 Hz.
+/// Windows that are looked at, in s: two swings of a hand at least.
 const WINDOW_S: f64 = 0.3;
 /// Samples that a window holds at least: fewer show no swings.
 const LEAST_IN_WINDOW: usize = 9;
-/// Frequencies at which hands tremble, in Hz.
+/// Frequencies at which hands tremble, in Hz: 8 to 12, physiologically, and what so short a window takes for them. The lower end was chosen
+/// with pumps of 4 and 5 Hz in sight.
 const HANDS_HZ: RangeInclusive<u32> = 6..=13;
 /// Frequencies that are looked at, in Hz: a pump that beats more slowly is the muscle's own.
 const FREQUENCIES_HZ: RangeInclusive<u32> = 3..=16;

@@ -319,7 +319,7 @@ fn turning(
     for &length_m in plays_m {
         let found =
             tile.directions(Thresholds { length_m, ..thresholds }, Carried::UNKNOWN, &turning_laws(thresholds), until)?;
-        let of_travels: io::Result<Vec<Triangle>> = found
+        let of_laws: io::Result<Vec<Triangle>> = found
             .par_iter()
             .map(|(direction, _)| {
                 let rows = tile.owned.start..until;
@@ -327,7 +327,7 @@ fn turning(
                 Ok(triangle(&condensed(&prepared, rows, &shared.columns, direction, counts, None)?))
             })
             .collect();
-        triangles.extend(of_travels?);
+        triangles.extend(of_laws?);
     }
     Ok(Answer::Travels { triangles })
 }
