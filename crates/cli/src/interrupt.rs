@@ -86,7 +86,7 @@ fn end_on_quit() {
 }
 
 /// Makes a panic of any thread, once it is reported, delete live temporaries and exit with code 101: nothing is
-/// unwound, as a release build could not, so that no output cleans up after itself.
+/// unwound, so that a worker that panics ends the program as the main thread would.
 pub(crate) fn end_on_panic() {
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {

@@ -82,17 +82,18 @@ pub(super) struct Outcome {
     pub(super) apart: Vec<&'static str>,
 }
 
-/// The best of `found` that is one of the rig; `first` is what every effect gained before any was taken, none at the first look.
-pub(super) fn taken(members: &[Member<'_>], found: &[Shared], first: Option<&[RigCandidate]>) -> Outcome {
+/// Ids of what may be taken after another was, by what every effect gained before any was: what gains nothing until another effect has
+/// been taken off is the remainder of that one. No shared value is exactly right for every muscle, and no effect has exactly the form of
+/// its page.
+pub(super) fn own_gains(first: &[RigCandidate]) -> Vec<&str> {
+    let gains = first.iter().filter(|candidate| candidate.log_ratio >= LEAST_ALONE);
+    gains.map(|candidate| candidate.id.as_str()).collect()
+}
+
+/// The best of `found` that is one of the rig.
+pub(super) fn taken(members: &[Member<'_>], found: &[Shared]) -> Outcome {
     let mut outcome = Outcome::default();
-    // What gains nothing until another effect has been taken off is the remainder of that one: no shared value is exactly right for
-    // every muscle, and no effect has exactly the form of its page.
-    let is_a_remainder = |id: &str| {
-        first.is_some_and(|first| {
-            first.iter().find(|candidate| candidate.id == id).is_none_or(|alone| alone.log_ratio < LEAST_ALONE)
-        })
-    };
-    for chosen in found.iter().filter(|shared| stands(members, shared) && !is_a_remainder(shared.guess.id())) {
+    for chosen in found.iter().filter(|shared| stands(members, shared)) {
         let Outcome { denied, apart, .. } = &outcome;
         let rivals = found
             .iter()

@@ -52,6 +52,11 @@ impl Explanation {
     fn cost(&self) -> f64 {
         COST * self.whole.guesses.len() as f64
     }
+
+    /// As a search for a shape sees it, or on all instants.
+    fn seen(&self, thinly: bool) -> (&State, &HeldOut) {
+        if thinly { (&self.thin, &self.thin_held_out) } else { (&self.whole, &self.held_out) }
+    }
 }
 
 /// What an effect of the rig is worth in a muscle.
@@ -151,14 +156,7 @@ impl<'a> Member<'a> {
     /// no fit.
     pub(super) fn worth(&self, guess: &CandidateEffect, thinly: bool) -> Option<Worth> {
         let setting = if thinly { self.setting().sampled() } else { self.setting() };
-        let parts = |explanation: &'_ Explanation| -> (State, HeldOut) {
-            if thinly {
-                (explanation.thin.clone(), explanation.thin_held_out.clone())
-            } else {
-                (explanation.whole.clone(), explanation.held_out.clone())
-            }
-        };
-        let base = parts(&self.explanations[0]).1;
+        let base = self.explanations[0].seen(thinly).1;
         /// What is gained, and what is then left, a mean square in N².
         type Gain = (f64, f64);
         let (mut without, mut with) = (None, None);
@@ -169,9 +167,9 @@ impl<'a> Member<'a> {
             }
         };
         for explanation in &self.explanations {
-            let (state, held_out) = parts(explanation);
-            better(&mut without, &held_out, explanation.cost());
-            if let Some((held_out, _)) = trial::weigh(&setting, &state, guess) {
+            let (state, held_out) = explanation.seen(thinly);
+            better(&mut without, held_out, explanation.cost());
+            if let Some((held_out, _)) = trial::weigh(&setting, state, guess) {
                 better(&mut with, &held_out, explanation.cost());
             }
         }

@@ -3,7 +3,7 @@
 use pam_artifact::group::RigCandidate;
 use pam_muscle::effects::{CATALOGUE, Effect, Term};
 
-use super::look::{TELLS, Taken, look, taken};
+use super::look::{TELLS, Taken, look, own_gains, taken};
 use super::member::Member;
 use super::shared::Shared;
 use crate::artifact::{Agreement, together};
@@ -112,14 +112,17 @@ fn of_the_rig(alone: &[Alone]) -> Result<OfTheRig, DiagnoseError> {
         let allowed = |effect: &&&'static dyn Effect| {
             let id = effect.page().id;
             let excluded = |one: &Alone| one.diagnosis.config.excluded.iter().any(|excluded| excluded == id);
-            is_of_the_rig(**effect) && !alone.iter().any(excluded) && rig.iter().all(|taken| taken.guess.id() != id)
+            is_of_the_rig(**effect)
+                && !alone.iter().any(excluded)
+                && rig.iter().all(|taken| taken.guess.id() != id)
+                && (rig.is_empty() || own_gains(&candidates).contains(&id))
         };
         let effects: Vec<&'static dyn Effect> = CATALOGUE.iter().filter(allowed).copied().collect();
         let found = look(&members, &effects);
         if rig.is_empty() {
             candidates = found.iter().map(candidate).collect();
         }
-        let outcome = taken(&members, &found, (!rig.is_empty()).then_some(&candidates));
+        let outcome = taken(&members, &found);
         denied.extend(outcome.denied);
         apart.extend(outcome.apart);
         let Some(next) = outcome.taken else { break };
