@@ -27,7 +27,7 @@ fn main() {
         confirmed: false,
     };
     let question = DiagnosisProblem::new(&prepared, &model, limits);
-    let SearchOutcome { track, found, knocks, sizes } = question.answer(&track, &|| {}).unwrap();
+    let SearchOutcome { track, found, knocks, sizes, .. } = question.answer(&track, &|| {}).unwrap();
     let setting = question.setting(&track, &found.nuisance);
     println!(
         "base {:.3} N, floor {:.3} N, sensor floor {:.3} N",

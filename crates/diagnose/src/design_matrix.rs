@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pam_muscle::effects::{Base, Memory, Moment, Role};
+use pam_muscle::effects::{Base, Kind, Memory, Moment, Role};
 use pam_muscle::force::ForceModel;
 use pam_muscle::force::columns::{FRICTION, ForceColumns, N_COLUMNS};
 use rayon::prelude::*;
@@ -22,6 +22,8 @@ pub struct DesignMatrix {
     pub columns: Vec<f64>,
     /// Columns of a row.
     pub width: usize,
+    /// Those of events, which come on top of what the cell reads.
+    pub events: Vec<usize>,
 }
 
 impl DesignMatrix {
@@ -29,6 +31,11 @@ impl DesignMatrix {
     pub fn force_n(&self, at: usize, weights: &[f64]) -> f64 {
         let row = &self.columns[at * self.width..(at + 1) * self.width];
         row.iter().zip(weights).map(|(column, weight)| column * weight).sum()
+    }
+
+    /// The part of it that events make, in N.
+    pub fn events_n(&self, at: usize, weights: &[f64]) -> f64 {
+        self.events.iter().map(|&event| self.columns[at * self.width + event] * weights[event]).sum()
     }
 }
 
@@ -50,11 +57,21 @@ impl Regressors<'_> {
     pub fn sheet(&self, guesses: &[CandidateEffect], model: &ForceModel) -> DesignMatrix {
         let width = N_COLUMNS + n_amplitudes(guesses);
         let n = self.track.n();
+        let mut events = Vec::new();
+        let mut at = N_COLUMNS;
+        for guess in guesses {
+            let own = at..at + guess.amplitudes().len();
+            at = own.end;
+            if guess.effect.kind() == Kind::Event {
+                events.extend(own);
+            }
+        }
         let mut sheet = DesignMatrix {
             seen: self.track.instants.iter().map(|instant| instant.moment).collect(),
             base: vec![Base::default(); n],
             columns: vec![0.0; n * width],
             width,
+            events,
         };
         let DesignMatrix { seen, base, columns, .. } = &mut sheet;
         let (mut seen, mut base, mut columns) = (&mut seen[..], &mut base[..], &mut columns[..]);

@@ -26,6 +26,7 @@ use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::places::regions;
 use crate::plausible::implausible;
 use crate::problem::DiagnosisProblem;
+use crate::resting_step;
 use crate::rig;
 use crate::search::Limits;
 use crate::standing::{Standing, unexplained};
@@ -195,7 +196,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let question = DiagnosisProblem::new(&estimation, &model, limits);
     let held = (!holdout.is_empty()).then(|| rig::track(&holdout, &model, &rig)).transpose()?;
     let held = held.map(|held| question.without_mistaken(&held));
-    let Standing { track, mut found, knocks, mut sizes, too_short } = Standing::of(&question, outcome, held.as_ref())?;
+    let Standing { track, mut found, knocks, step, mut sizes, too_short } =
+        Standing::of(&question, outcome, held.as_ref())?;
     let nuisance = found.nuisance.clone();
     let setting = question.setting(&track, &nuisance);
     let (as_given, direction) = (model.force_model(), model.direction);
@@ -208,9 +210,10 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     };
     let against = held.as_ref().map(|_| discover::HeldAgainst { left: &held_left, given: &as_given });
     let space = &question.space;
+    let besides = knocks.is_some() || step.is_some();
     observer(steps - 1, steps);
     let (verdict, discovery) =
-        discover::beside_names(&setting, &mut found, &mut sizes, &question.limits, knocks.is_some(), against);
+        discover::beside_names(&setting, &mut found, &mut sizes, &question.limits, besides, against);
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
     // Beside the names that stay.
     given.beside_effects(&question, &track, &found, !rig.is_empty());
@@ -236,6 +239,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         found: &found,
         discovery: discovery.as_ref(),
         knocks: knocks.as_ref(),
+        step: step.as_ref(),
         folds: &folds,
         uncertainty: &uncertainty,
         correlated,
@@ -257,6 +261,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         let at = if written.effects[0].id == knocks::ID { 0 } else { regions.len() };
         regions.insert(at, knocks.region(sizes.mismatch_n));
     }
+    regions.extend(step.as_ref().map(|step| step.region(sizes.mismatch_n, &question.paths())));
     let unexplained =
         if verdict == Verdict::Unexplained { unexplained(&question, &setting, &found) } else { Vec::new() };
     let isolability =
@@ -267,7 +272,9 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         confirm_mass(InertialTransient::effect(), knocks.mass_kg(), state, &model.domain)
     };
     let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(mass);
-    let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, knocks.is_some()));
+    let named_besides: Vec<&str> =
+        knocks.iter().map(|_| knocks::ID).chain(step.iter().map(|_| resting_step::ID)).collect();
+    let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, &named_besides));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
     let Written { mut entries, effects, empirical, kept, .. } = written;

@@ -93,23 +93,6 @@ pub struct InertialTransient {
 }
 
 impl InertialTransient {
-    /// Of a mass that explains so much over all rows, for tests of what is made of that.
-    #[cfg(test)]
-    pub(crate) fn of_test(all_rows_n: f64) -> Self {
-        let held = HeldOut { blocks: Vec::new(), counts: Vec::new(), floor_square: 0.0 };
-        let (without, with) = (held.clone(), held);
-        Self {
-            mass_kg: 1.0,
-            mass_stderr_kg: 0.1,
-            mount_hz: 50.0,
-            without,
-            with,
-            all_rows_n,
-            touched: Vec::new(),
-            speeds_m_per_s: (0.0, 0.0),
-        }
-    }
-
     /// Those in what `explained` leaves, where they matter and a mass may be named beside what it has.
     ///
     /// # Errors

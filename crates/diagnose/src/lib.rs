@@ -41,6 +41,7 @@ pub mod problem;
 mod protocols;
 mod regions;
 mod rehearsal;
+mod resting_step;
 mod rig;
 pub mod search;
 mod short;

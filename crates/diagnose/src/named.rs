@@ -6,7 +6,7 @@ use pam_muscle::effects::{Sentence, Term};
 
 use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
-use crate::knocks::{self, InertialTransient};
+use crate::knocks::InertialTransient;
 use crate::nuisance::MAP_ID;
 use crate::own;
 use crate::search::{Found, chance};
@@ -32,7 +32,7 @@ pub(crate) fn term_entry(term: &EmpiricalTerm) -> EffectEntry {
 }
 
 /// The mass behind `knocks`.
-fn knocking(knocks: &InertialTransient) -> NamedEffect {
+pub(crate) fn knocking(knocks: &InertialTransient) -> NamedEffect {
     let page = InertialTransient::effect().page();
     NamedEffect {
         id: page.id.to_owned(),
@@ -46,7 +46,7 @@ fn knocking(knocks: &InertialTransient) -> NamedEffect {
 }
 
 /// What the muscle has been through when the recordings end, where that goes on in others.
-fn past_entries(guess: &CandidateEffect) -> impl Iterator<Item = ParameterEntry> {
+pub(crate) fn past_entries(guess: &CandidateEffect) -> impl Iterator<Item = ParameterEntry> {
     guess.effect.keeps().iter().zip(guess.beginning.past().after).map(|(kept, value)| ParameterEntry {
         name: kept.name.to_owned(),
         value,
@@ -77,7 +77,7 @@ pub(crate) fn evidence_of(found: &Found, index: usize) -> Evidence {
     evidence(without, with, found.first.len())
 }
 
-/// The effects that were taken and the mass behind `knocks`, in order of evidence, and in that in which a model has them;
+/// The effects that were taken and what was named `besides`, in order of evidence, and in that in which a model has them;
 /// `correlated` instants of the residual stand for one; `state` is what was found, with terms without a name beside it.
 pub(crate) fn named(
     setting: &Setting<'_>,
@@ -86,7 +86,7 @@ pub(crate) fn named(
     uncertainty: &Uncertainty,
     correlated: f64,
     sentences: &[Option<Sentence>],
-    knocks: Option<&InertialTransient>,
+    besides: Vec<NamedEffect>,
 ) -> (Vec<NamedEffect>, Vec<EffectEntry>) {
     let (mut named, mut list) = (Vec::new(), Vec::new());
     let mut first = 0;
@@ -114,16 +114,16 @@ pub(crate) fn named(
             separating_test: separating_test.to_owned(),
         });
     }
-    if let Some(knocking) = knocks.map(knocking) {
-        list.push(EffectEntry::new(&knocking.id, knocking.parameters.clone()));
-        named.push(knocking);
+    for other in besides {
+        list.push(EffectEntry::new(&other.id, other.parameters.clone()));
+        named.push(other);
     }
     named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
     (named, list)
 }
 
-/// What became of every candidate of the first look.
-pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
+/// What became of every candidate of the first look; `besides` are ids that were named besides what the search took.
+pub(crate) fn candidates(found: &Found, besides: &[&str]) -> Vec<Candidate> {
     let taken: Vec<&str> = found.best.state.guesses.iter().map(CandidateEffect::id).collect();
     let rivals: Vec<&str> = (0..taken.len()).flat_map(|index| alternatives(found, index)).collect();
     found
@@ -133,7 +133,7 @@ pub(crate) fn candidates(found: &Found, knocks: bool) -> Vec<Candidate> {
             let id = trial.guess.id();
             let before = trial.before.mean_square().max(f64::MIN_POSITIVE);
             let explains = (1.0 - trial.held_out.mean_square() / before).clamp(0.0, 1.0);
-            let outcome = if taken.contains(&id) || (knocks && id == knocks::ID) {
+            let outcome = if taken.contains(&id) || besides.contains(&id) {
                 "named".to_owned()
             } else if rivals.contains(&id) {
                 "cannot be distinguished from one named".to_owned()

@@ -1,4 +1,4 @@
-//! What a search is made with, and the search itself: on the grid, then for knocks, and then on the grid without them.
+//! What a search is made with, and the search itself: on the grid, then for knocks or a step at rest, and then on the grid without them.
 
 use pam_artifact::ModelArtifact;
 use pam_identification::prepare::Prepared;
@@ -10,11 +10,16 @@ use crate::base;
 use crate::error::DiagnoseError;
 use crate::knocks::{self, InertialTransient, Residual};
 use crate::nuisance::{self, Nuisance};
+use crate::resting_step::{self, RestingStep};
 use crate::search::{Found, Limits, search};
 use crate::state::Setting;
 use crate::track::Track;
 use crate::turns;
 use crate::verdict::Sizes;
+
+/// Times the mean square that a search leaves below which one must leave it that a step at rest was taken off before. Of steps of 9 N that
+/// were added to recordings of real muscles six that were looked at left at most 0.89 times, three that were none, 0.97 and more.
+const CLEARLY_LESS: f64 = 0.95;
 
 /// What a search is made with, but for the track.
 #[derive(Debug)]
@@ -36,12 +41,14 @@ pub struct DiagnosisProblem<'a> {
 /// What came out.
 #[derive(Debug)]
 pub struct SearchOutcome {
-    /// The recordings, without what knocks touch where a mass was named.
+    /// The recordings, without what knocks touch where a mass was named, and without a step at rest.
     pub track: Track,
     /// What the search found on it.
     pub found: Found,
     /// A mass that knocks.
     pub knocks: Option<InertialTransient>,
+    /// A step of the force at rest.
+    pub(crate) step: Option<RestingStep>,
     /// Sizes that a verdict rests on.
     pub sizes: Sizes,
 }
@@ -86,7 +93,7 @@ impl<'a> DiagnosisProblem<'a> {
         let track = self.without_mistaken(track);
         let (found, sizes) = self.search(&track, &self.limits, looked)?;
         let Some(first) = self.knocks(&found, &sizes, Residual::WithSpeed)? else {
-            return Ok(SearchOutcome { track, found, knocks: None, sizes });
+            return self.beside_step(SearchOutcome { track, found, knocks: None, step: None, sizes }, looked);
         };
         // What knocks leave on the grid around them would hide the rest, and would be taken for something else. The mass itself
         // is known better from them than from what is smooth.
@@ -97,8 +104,39 @@ impl<'a> DiagnosisProblem<'a> {
         let (mut found, sizes) = self.search(&track, &limits, looked)?;
         found.first = first_look;
         let knocks = self.knocks(&found, &sizes, Residual::Explained)?.unwrap_or_else(|| first.within_range());
-        let sizes = sizes.with(&knocks);
-        Ok(SearchOutcome { track, found, knocks: Some(knocks), sizes })
+        let sizes = sizes.with(knocks.all_rows_n);
+        Ok(SearchOutcome { track, found, knocks: Some(knocks), step: None, sizes })
+    }
+
+    /// `outcome`, or the same beside a step of the force at rest where one is there that matters, and clearly less is left.
+    fn beside_step(&self, outcome: SearchOutcome, looked: &dyn Fn()) -> Result<SearchOutcome, DiagnoseError> {
+        let is_excluded = self.limits.excluded.iter().any(|id| id == resting_step::ID);
+        if is_excluded || self.limits.max_effects == 0 {
+            return Ok(outcome);
+        }
+        let muscle = &self.model.geometry;
+        let mut limits = self.limits.clone();
+        limits.excluded.push(resting_step::ID.to_owned());
+        limits.max_effects -= 1;
+        let left = |found: &Found| found.best.held_out.mean_square();
+        let mut least = CLEARLY_LESS * left(&outcome.found);
+        let mut best: Option<SearchOutcome> = None;
+        let matters_n = if outcome.sizes.limited { outcome.sizes.matters_n } else { outcome.sizes.sensors_n };
+        let steps = RestingStep::all(&outcome.track, self.model.direction, muscle);
+        for step in steps.into_iter().filter(|step| step.all_instants_n > matters_n) {
+            let track = step.taken_off(outcome.track.clone(), muscle);
+            let (found, sizes) = self.search(&track, &limits, looked)?;
+            if left(&found) < least {
+                least = left(&found);
+                let step = step.compared(&outcome.found.best.held_out, &found.best.held_out);
+                let sizes = sizes.with(step.all_instants_n);
+                best = Some(SearchOutcome { track, found, knocks: None, step: Some(step), sizes });
+            }
+        }
+        Ok(match best {
+            Some(best) => SearchOutcome { found: Found { first: outcome.found.first, ..best.found }, ..best },
+            None => outcome,
+        })
     }
 
     /// `track` without instants beside turns whose direction is mistaken.

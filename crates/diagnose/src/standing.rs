@@ -8,6 +8,7 @@ use crate::error::DiagnoseError;
 use crate::knocks::InertialTransient;
 use crate::places::{structured, telling};
 use crate::problem::{DiagnosisProblem, SearchOutcome};
+use crate::resting_step::RestingStep;
 use crate::search::Found;
 use crate::short;
 use crate::stand_ins;
@@ -25,6 +26,8 @@ pub(crate) struct Standing {
     pub(crate) found: Found,
     /// A mass that knocks; beside it nothing is let go of, as it has sizes of its own.
     pub(crate) knocks: Option<InertialTransient>,
+    /// A step of the force at rest.
+    pub(crate) step: Option<RestingStep>,
     /// Sizes that a verdict rests on.
     pub(crate) sizes: Sizes,
     /// What recordings were too short for, in words.
@@ -41,22 +44,23 @@ impl Standing {
         outcome: SearchOutcome,
         held: Option<&Track>,
     ) -> Result<Self, DiagnoseError> {
-        let SearchOutcome { track, mut found, knocks, mut sizes } = outcome;
+        let SearchOutcome { track, mut found, knocks, step, mut sizes } = outcome;
+        let besides_n = step.as_ref().map_or(0.0, |step| step.all_instants_n);
         let limits = &question.limits;
         let lasts_s = question.estimation.iter().map(|prepared| prepared.quality.duration_s).sum();
         if knocks.is_some() {
             let nuisance = found.nuisance.clone();
             let too_short = short::let_go(&question.setting(&track, &nuisance), &mut found, limits, lasts_s);
-            return Ok(Self { track, found, knocks, sizes, too_short });
+            return Ok(Self { track, found, knocks, step, sizes, too_short });
         }
         if let Some(held) = held {
             found = veto::confirmed(question, &track, found, held)?;
-            sizes = Sizes::of(&found, limits);
+            sizes = Sizes::of(&found, limits).with(besides_n);
         }
         let nuisance = found.nuisance.clone();
         let setting = question.setting(&track, &nuisance);
         if stand_ins::let_go_of_ends(&setting, &mut found) {
-            sizes = Sizes::of(&found, limits);
+            sizes = Sizes::of(&found, limits).with(besides_n);
         }
         if verdict(&found, &sizes, false) == Verdict::Unexplained || stand_ins::leaves_too_much(&found, &sizes) {
             let left_over = unexplained(question, &setting, &found).first().map(|region| region.coordinate);
@@ -65,9 +69,9 @@ impl Standing {
         let too_short = short::let_go(&setting, &mut found, limits, lasts_s);
         let is_not_borne_out = held.is_some_and(|held| borne_out::let_go_of_others(&setting, &mut found, held));
         if !too_short.is_empty() || is_not_borne_out {
-            sizes = Sizes::of(&found, limits);
+            sizes = Sizes::of(&found, limits).with(besides_n);
         }
-        Ok(Self { track, found, knocks, sizes, too_short })
+        Ok(Self { track, found, knocks, step, sizes, too_short })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use pam_identification::search_space::SearchSpace;
 use pam_muscle::Muscle;
-use pam_muscle::effects::{Effect, Memory, Role, Term};
+use pam_muscle::effects::{Effect, Kind, Memory, Role, Term};
 use pam_muscle::force::ForceModel;
 use pam_muscle::force::columns::ForceColumns;
 
@@ -130,7 +130,7 @@ impl Read {
     ) -> usize {
         let mut moved = 0;
         for at in (0..counted.len()).filter(|&at| counted[at]) {
-            let force_n = sheet.force_n(at, weights) + nuisance_n[at];
+            let force_n = sheet.force_n(at, weights) - sheet.events_n(at, weights) + nuisance_n[at];
             let slope = memory.slope(force_n);
             // What hardly shows is nothing: rows next to zero are none that a decomposition can be made of.
             let slope = if slope > LEAST_SLOPE { slope } else { 0.0 };
@@ -144,13 +144,14 @@ impl Read {
     /// Columns and forces of which the cell reads that much.
     fn linear(&self, sheet: &DesignMatrix, force_n: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let measured = force_n.iter().zip(&self.offsets_n).map(|(force_n, offset_n)| force_n - offset_n).collect();
-        (self.scaled(sheet.columns.clone(), sheet.width), measured)
+        (self.scaled(sheet.columns.clone(), sheet.width, &sheet.events), measured)
     }
 
-    /// As much of `rows`, `width` columns each, as the cell reads.
-    fn scaled(&self, mut rows: Vec<f64>, width: usize) -> Vec<f64> {
+    /// As much of `rows`, `width` columns each, as the cell reads; all of the columns `unread`, which come on top of what it reads.
+    fn scaled(&self, mut rows: Vec<f64>, width: usize, unread: &[usize]) -> Vec<f64> {
         for (row, slope) in rows.chunks_exact_mut(width.max(1)).zip(&self.slopes).filter(|(_, slope)| **slope != 1.0) {
-            row.iter_mut().for_each(|column| *column *= slope);
+            let read = row.iter_mut().enumerate().filter(|(index, _)| !unread.contains(index));
+            read.for_each(|(_, column)| *column *= slope);
         }
         rows
     }
@@ -312,7 +313,7 @@ impl<'a> Setting<'a> {
         let beginnings = self.beginnings(state, guess);
         let mut limits = ranges(&state.guesses);
         limits.extend(beginnings.iter().map(|_| before(guess)));
-        let rows = self.beside_rows(state, Vec::new(), &beginnings);
+        let rows = self.beside_rows(state, Vec::new(), &beginnings, false);
         let rows = state.normal.extend(&rows, beginnings.len(), 0, self.nuisance, &state.read.slopes);
         self.joint(&limits).hold_out(&rows, &state.fit.x, &self.track.fold_of_block)
     }
@@ -330,21 +331,21 @@ impl<'a> Setting<'a> {
         limits.extend(guess.ranges());
         let beginnings = if guess.has_own_beginnings() { self.beginnings(state, guess) } else { Vec::new() };
         limits.extend(beginnings.iter().map(|_| before(guess)));
-        (self.beside_rows(state, rows, &beginnings), limits)
+        (self.beside_rows(state, rows, &beginnings, guess.effect.kind() == Kind::Event), limits)
     }
 
-    /// `rows` with one of `columns` after the other behind each, as much of them as the cell reads.
-    fn beside_rows(&self, state: &State, rows: Vec<f64>, columns: &[Vec<f64>]) -> Vec<f64> {
+    /// `rows` with one of `columns` after the other behind each, as much of them as the cell reads; all of an event, which has one column.
+    fn beside_rows(&self, state: &State, rows: Vec<f64>, columns: &[Vec<f64>], is_event: bool) -> Vec<f64> {
         let n = self.track.n();
         let width = rows.len() / n;
         if columns.is_empty() {
-            return state.read.scaled(rows, width);
+            return state.read.scaled(rows, width, if is_event { &[0] } else { &[] });
         }
         let joined = (0..n).flat_map(|at| {
             let own = rows[at * width..(at + 1) * width].iter().copied();
             own.chain(columns.iter().map(move |column| column[at]))
         });
-        state.read.scaled(joined.collect(), width + columns.len())
+        state.read.scaled(joined.collect(), width + columns.len(), &[])
     }
 
     /// What `guess` leaves in every recording of what went before it: a column for each recording and amplitude, in which
@@ -366,8 +367,9 @@ impl<'a> Setting<'a> {
             .iter()
             .enumerate()
             .map(|(at, instant)| {
-                let model_n = state.sheet.force_n(at, &state.fit.weights) + state.nuisance_n[at];
-                instant.force_n - read.slopes[at] * model_n - read.offsets_n[at]
+                let events_n = state.sheet.events_n(at, &state.fit.weights);
+                let model_n = state.sheet.force_n(at, &state.fit.weights) - events_n + state.nuisance_n[at];
+                instant.force_n - read.slopes[at] * model_n - read.offsets_n[at] - events_n
             })
             .collect()
     }

@@ -96,7 +96,7 @@ fn stirred(setting: &Setting<'_>, range: std::ops::Range<usize>) -> Vec<bool> {
 /// whatever friction or a drive does at one of them, it does at the others too.
 const ALONE: f64 = 3.0;
 /// Parts that a recording is cut into for that comparison, and of how many of them a start, stop or turn is needed for one.
-const PARTS: usize = 20;
+pub(crate) const PARTS: usize = 20;
 /// See [`PARTS`].
 const OTHERS: usize = 4;
 /// Parts from which on one of them may jump as much: where a recording begins, friction is as something before it left it.
@@ -104,7 +104,7 @@ const MANY: usize = 8;
 
 /// Whether a jump of `own_n` in the given part stands alone among the largest of the parts in which drives stir at all; its
 /// neighbours do not count, for it may reach into them.
-fn stands_alone(largest_n: &[Option<f64>; PARTS], part: usize, own_n: f64) -> bool {
+pub(crate) fn stands_alone(largest_n: &[Option<f64>; PARTS], part: usize, own_n: f64) -> bool {
     let elsewhere = largest_n.iter().enumerate().filter(|(other, _)| other.abs_diff(part) > 1);
     let jumps_n: Vec<f64> = elsewhere.filter_map(|(_, jump_n)| *jump_n).collect();
     let as_large = jumps_n.iter().filter(|&&jump_n| own_n <= ALONE * jump_n).count();

@@ -2,7 +2,6 @@
 
 use pam_artifact::diagnosis::Verdict;
 
-use crate::knocks::InertialTransient;
 use crate::search::{Found, Limits, Taken};
 
 /// Sizes that the verdict rests on, root mean square over held-out blocks, in N.
@@ -66,9 +65,9 @@ impl Sizes {
         }
     }
 
-    /// The same where `knocks` were explained besides.
-    pub fn with(self, knocks: &InertialTransient) -> Self {
-        Self { mismatch_n: self.mismatch_n.hypot(knocks.all_rows_n), ..self }
+    /// The same where so much, root mean square, was explained besides.
+    pub fn with(self, explained_n: f64) -> Self {
+        Self { mismatch_n: self.mismatch_n.hypot(explained_n), ..self }
     }
 
     /// Share of the mismatch that the best hypothesis leaves, in mean squares, by what any model leaves.
@@ -94,11 +93,11 @@ fn beyond_form(found: &Found) -> Option<f64> {
     (square > found.form_square).then(|| square.sqrt())
 }
 
-/// The verdict, for what the search found; `knocks` says whether a mass was named besides.
-pub fn verdict(found: &Found, sizes: &Sizes, knocks: bool) -> Verdict {
+/// The verdict, for what the search found; `besides` says whether something was named besides that.
+pub fn verdict(found: &Found, sizes: &Sizes, besides: bool) -> Verdict {
     let more_than = |times: f64, share: f64| sizes.left_n > times * sizes.matters_n && sizes.share_left() > share;
     let structured = more_than(0.5, MOST_LEFT) || more_than(1.0, LEAST_LEFT);
-    if found.best.state.guesses.is_empty() && !knocks {
+    if found.best.state.guesses.is_empty() && !besides {
         let beyond_sensors = !sizes.limited && sizes.best_n > CONSISTENT_WITHIN * sizes.sensors_n;
         let is_missing = sizes.mismatch_n > sizes.matters_n || beyond_sensors || sizes.static_n.is_some();
         // What called up a name that is none is there.

@@ -11,9 +11,10 @@ use crate::discover::{Discovery, HeldAgainst};
 use crate::elsewhere::{KeptToFitted, keep_to_fitted};
 use crate::joint::JointFit;
 use crate::knocks::InertialTransient;
-use crate::named::{map_entry, named, term_entry};
+use crate::named::{knocking, map_entry, named, term_entry};
 use crate::nuisance;
 use crate::own;
+use crate::resting_step::RestingStep;
 use crate::search::Found;
 use crate::state::{Setting, State};
 use crate::uncertainty::{self, Uncertainty};
@@ -30,6 +31,8 @@ pub(crate) struct Fit<'a> {
     pub(crate) discovery: Option<&'a Discovery>,
     /// A mass that knocks.
     pub(crate) knocks: Option<&'a InertialTransient>,
+    /// A step of the force at rest.
+    pub(crate) step: Option<&'a RestingStep>,
     /// The same fit with each fold left out.
     pub(crate) folds: &'a [JointFit],
     /// Standard errors.
@@ -43,7 +46,7 @@ impl Fit<'_> {
     /// determine them.
     fn names_beside(&self, base: &ForceModel, sentences: &[Option<Sentence>]) -> Option<Vec<Term>> {
         let guesses = &self.state.guesses;
-        if self.discovery.is_some() || self.knocks.is_some() {
+        if self.discovery.is_some() || self.knocks.is_some() || self.step.is_some() {
             return None;
         }
         if guesses.is_empty() {
@@ -78,9 +81,10 @@ pub(crate) struct Written {
 impl Written {
     /// All that was fitted, in every recording.
     pub(crate) fn of(fit: &Fit<'_>) -> Self {
-        let Fit { setting, state, found, discovery, knocks, folds, .. } = *fit;
+        let Fit { setting, state, found, discovery, knocks, step, folds, .. } = *fit;
         let sentences = own::sentences(setting, state);
-        let (effects, mut entries) = named(setting, found, state, fit.uncertainty, fit.correlated, &sentences, knocks);
+        let besides = knocks.map(knocking).into_iter().chain(step.map(RestingStep::named)).collect();
+        let (effects, mut entries) = named(setting, found, state, fit.uncertainty, fit.correlated, &sentences, besides);
         let mut terms = own::terms(state.terms(), &sentences);
         let empirical = discovery.map(|discovery| discovery.written(setting, found, folds));
         entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
@@ -90,6 +94,7 @@ impl Written {
         }
         terms.extend(discovery.iter().flat_map(|discovery| discovery.terms()));
         terms.extend(knocks.map(InertialTransient::term));
+        terms.extend(step.map(RestingStep::term));
         Self { base: state.model.clone(), terms, entries, effects, empirical, kept: None, sentences }
     }
 

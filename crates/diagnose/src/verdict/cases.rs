@@ -67,8 +67,7 @@ fn what_is_left_is_a_share_of_mean_squares_and_never_more_than_all() {
 
 #[test]
 fn what_knocks_explain_besides_adds_to_the_mismatch_in_squares() {
-    let knocks = InertialTransient::of_test(7.5);
-    let with = Sizes { left_n: 3.0, ..SIZES }.with(&knocks);
+    let with = Sizes { left_n: 3.0, ..SIZES }.with(7.5);
     assert_eq!((with.mismatch_n, with.left_n), (12.5, 3.0));
 }
 

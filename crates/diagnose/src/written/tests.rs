@@ -25,6 +25,7 @@ fn settled(concealed: Concealed<'_>, left_n: &dyn Fn(&AugmentedModel) -> f64) ->
         found: &found,
         discovery: None,
         knocks: None,
+        step: None,
         folds: &folds,
         uncertainty: &uncertainty,
         correlated: 1.0,

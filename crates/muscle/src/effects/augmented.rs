@@ -255,7 +255,7 @@ impl AugmentedMemory {
             }
         }
         let terms = model.base.terms(now.pressure_pa, now.length_m, slide);
-        let mut force_n = terms.force_n();
+        let (mut force_n, mut event_n) = (terms.force_n(), 0.0);
         if model.pulls {
             let base = if model.slopes {
                 Base::of(&model.base, now.pressure_pa, now.length_m)
@@ -266,7 +266,10 @@ impl AugmentedMemory {
                 let columns = &mut self.columns[..term.amplitudes.len()];
                 if !columns.is_empty() {
                     memory.pulls(&now, &base, columns);
-                    force_n += columns.iter().zip(&term.amplitudes).map(|(column, value)| column * value).sum::<f64>();
+                    let pull_n =
+                        columns.iter().zip(&term.amplitudes).map(|(column, value)| column * value).sum::<f64>();
+                    // A cell that was knocked reads more of a slack muscle as well.
+                    *(if term.effect.kind() == Kind::Event { &mut event_n } else { &mut force_n }) += pull_n;
                 }
             }
         }
@@ -275,7 +278,7 @@ impl AugmentedMemory {
             self.is_cut |= memory.cuts(force_n);
             force_n = memory.reads(force_n);
         }
-        force_n
+        force_n + event_n
     }
 
     /// Whether the last force was cut: a reading leaves nothing of changes of it.

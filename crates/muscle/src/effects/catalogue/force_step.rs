@@ -5,6 +5,8 @@
 //! F = F_base - A [t < t₀]   in it and the recordings before, where it goes on
 //! ```
 //!
+//! It comes on top of what the load cell reads: one that was knocked reads more of a slack muscle as well.
+//!
 //! Where nobody has set the force to zero since, the step goes on in every recording after it. The model then is that of the muscle
 //! and its cell as they are now, and holds for any other recording as it stands.
 
