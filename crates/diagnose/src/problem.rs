@@ -146,14 +146,20 @@ impl<'a> DiagnosisProblem<'a> {
         turns::without_mistaken(&setting, &start, &self.model.force_model(), self.limits.sensor_floor_n)
     }
 
+    /// The same question, asked without the effects `excluded`.
+    pub(crate) fn without(&self, excluded: impl IntoIterator<Item = &'static str>) -> Self {
+        let mut limits = self.limits.clone();
+        limits.excluded.extend(excluded.into_iter().map(str::to_owned));
+        Self::new(self.estimation, self.model, limits)
+    }
+
     /// The search on `track` alone, without the effects `excluded`.
     ///
     /// # Errors
     /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit.
     pub(crate) fn search_without(&self, track: &Track, excluded: &[&'static str]) -> Result<Found, DiagnoseError> {
-        let mut limits = self.limits.clone();
-        limits.excluded.extend(excluded.iter().map(|&id| id.to_owned()));
-        Ok(self.search(track, &limits, &|| {})?.0)
+        let question = self.without(excluded.iter().copied());
+        Ok(question.search(track, &question.limits, &|| {})?.0)
     }
 
     fn search(&self, track: &Track, limits: &Limits, looked: &dyn Fn()) -> Result<(Found, Sizes), DiagnoseError> {

@@ -8,7 +8,7 @@ use crate::error::DiagnoseError;
 use crate::knocks::InertialTransient;
 use crate::places::{structured, telling};
 use crate::problem::{DiagnosisProblem, SearchOutcome};
-use crate::resting_step::RestingStep;
+use crate::resting_step::{self, RestingStep};
 use crate::search::Found;
 use crate::short;
 use crate::stand_ins;
@@ -46,6 +46,7 @@ impl Standing {
     ) -> Result<Self, DiagnoseError> {
         let SearchOutcome { track, mut found, knocks, step, mut sizes } = outcome;
         let besides_n = step.as_ref().map_or(0.0, |step| step.all_instants_n);
+        let question = &question.without(step.iter().map(|_| resting_step::ID));
         let limits = &question.limits;
         let lasts_s = question.estimation.iter().map(|prepared| prepared.quality.duration_s).sum();
         if knocks.is_some() {
