@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 SHARE = $(DESTDIR)$(PREFIX)/share
 PROGRAMS := pam-identify pam-predict pam-diagnose pam-train-inverse exo-track pam-bench pam-export pam-fleet pam-compare
 
-.PHONY: all install test check bench compare tables tutorial tutorial-muscle first-hour hard-use odd-inputs mutate short-recordings fuzz datasets recordings prove prove-worlds prove-real sensitivity fleet-slurm processors mutants clean cargo-is-there
+.PHONY: all install test check bench compare tables tutorial tutorial-muscle first-hour hard-use odd-inputs mutate short-recordings fuzz datasets recordings prove prove-worlds prove-real prove-added sensitivity fleet-slurm processors mutants clean cargo-is-there
 
 all: cargo-is-there
 	@$(CARGO) build --release --locked --bins
@@ -146,6 +146,11 @@ sensitivity: cargo-is-there
 prove-real: cargo-is-there
 	@$(CARGO) build --release --locked --workspace --bins
 	$(BIN)/prove-real $(if $(PAM_RECORDINGS),--recordings $(PAM_RECORDINGS)) --record scripts/proof
+
+# The same with delays, a play of the gauge, steps of the force and clipping added to them.
+prove-added: cargo-is-there
+	@$(CARGO) build --release --locked --bins
+	scripts/proof/added-faults --bin $(BIN) --recordings $(or $(PAM_RECORDINGS),recordings) --record scripts/proof
 
 # The workflow of a fleet on a Slurm of two nodes on this machine, where the distribution's packages are installed; needs a
 # network the first time.
