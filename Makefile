@@ -147,10 +147,10 @@ prove-real: cargo-is-there
 	@$(CARGO) build --release --locked --workspace --bins
 	$(BIN)/prove-real $(if $(PAM_RECORDINGS),--recordings $(PAM_RECORDINGS)) --record scripts/proof
 
-# The same with delays, a play of the gauge, steps of the force and clipping added to them.
+# The same with delays, a play of the gauge, steps of the force (SEED=N draws others) and clipping added to them.
 prove-added: cargo-is-there
 	@$(CARGO) build --release --locked --bins
-	scripts/proof/added-faults --bin $(BIN) --recordings $(or $(PAM_RECORDINGS),recordings) --record scripts/proof
+	scripts/proof/added-faults --bin $(BIN) $(if $(SEED),--seed $(SEED)) --recordings $(or $(PAM_RECORDINGS),recordings) --record scripts/proof
 
 # The workflow of a fleet on a Slurm of two nodes on this machine, where the distribution's packages are installed; needs a
 # network the first time.

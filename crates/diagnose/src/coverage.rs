@@ -75,7 +75,7 @@ fn range<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
     fn trace(samples: &[(f64, f64)]) -> Trace {
@@ -92,10 +92,9 @@ mod tests {
         assert!(!coverage.holds(90e3, 0.201) && !coverage.holds(50e3, 0.23) && !coverage.holds(-30e3, 0.2));
     }
 
-    #[test]
-    fn only_samples_where_recordings_have_been_are_kept() {
-        // Four samples, of which the last does not count.
-        let sampled = |pressure_pa: [f64; 4], missed_n: [f64; 4]| Trace {
+    /// Four samples, of which the last does not count.
+    pub(crate) fn trace_of(pressure_pa: [f64; 4], missed_n: [f64; 4]) -> Trace {
+        Trace {
             time_s: vec![0.0, 0.1, 0.2, 0.3],
             pressure_pa: pressure_pa.to_vec(),
             length_m: vec![0.25, 0.24, 0.23, 0.22],
@@ -103,11 +102,15 @@ mod tests {
             model_n: vec![100.0; 4],
             direction: vec![1.0; 4],
             settled: vec![true, true, true, false],
-        };
-        let coverage = Coverage::of(&[sampled([1e5, 1.1e5, 1.2e5, 1.3e5], [0.0; 4])]);
-        let all = coverage.within(&sampled([1e5, 1.1e5, 1.2e5, 1.3e5], [1.0; 4]));
+        }
+    }
+
+    #[test]
+    fn only_samples_where_recordings_have_been_are_kept() {
+        let coverage = Coverage::of(&[trace_of([1e5, 1.1e5, 1.2e5, 1.3e5], [0.0; 4])]);
+        let all = coverage.within(&trace_of([1e5, 1.1e5, 1.2e5, 1.3e5], [1.0; 4]));
         assert_eq!((all.time_s.len(), all.settled.len()), (4, 4));
-        let some = coverage.within(&sampled([1e5, 9e5, 1.2e5, 9e5], [1.0, 2.0, 3.0, 4.0]));
+        let some = coverage.within(&trace_of([1e5, 9e5, 1.2e5, 9e5], [1.0, 2.0, 3.0, 4.0]));
         assert_eq!(some.time_s, [0.0, 0.2]);
         assert_eq!(some.force_n, [101.0, 103.0]);
         assert_eq!(some.settled, [true, true]);

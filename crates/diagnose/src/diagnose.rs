@@ -210,10 +210,10 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     };
     let against = held.as_ref().map(|_| discover::HeldAgainst { left: &held_left, given: &as_given });
     let space = &question.space;
-    let besides = knocks.is_some() || step.is_some();
+    let besides: Vec<&str> = knocks.iter().map(|_| knocks::ID).chain(step.iter().map(|_| resting_step::ID)).collect();
     observer(steps - 1, steps);
     let (verdict, discovery) =
-        discover::beside_names(&setting, &mut found, &mut sizes, &question.limits, besides, against);
+        discover::beside_names(&setting, &mut found, &mut sizes, &question.limits, !besides.is_empty(), against);
     let verdict = discovery.as_ref().map_or(verdict, |discovery| discovery.verdict(verdict));
     // Beside the names that stay.
     given.beside_effects(&question, &track, &found, !rig.is_empty());
@@ -272,9 +272,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         confirm_mass(InertialTransient::effect(), knocks.mass_kg(), state, &model.domain)
     };
     let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(mass);
-    let named_besides: Vec<&str> =
-        knocks.iter().map(|_| knocks::ID).chain(step.iter().map(|_| resting_step::ID)).collect();
-    let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, &named_besides));
+    let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, &besides));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
     let Written { mut entries, effects, empirical, kept, .. } = written;

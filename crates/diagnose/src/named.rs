@@ -2,7 +2,7 @@
 
 use pam_artifact::diagnosis::{Candidate, EmpiricalTerm, Evidence, NamedEffect};
 use pam_artifact::model::{EffectEntry, ParameterEntry, ParameterStatus};
-use pam_muscle::effects::{Sentence, Term};
+use pam_muscle::effects::{Effect, Sentence, Term};
 
 use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
@@ -31,18 +31,24 @@ pub(crate) fn term_entry(term: &EmpiricalTerm) -> EffectEntry {
     EffectEntry::empirical(term.sentence.clone(), term.parameters.clone())
 }
 
-/// The mass behind `knocks`.
-pub(crate) fn knocking(knocks: &InertialTransient) -> NamedEffect {
-    let page = InertialTransient::effect().page();
+/// `effect` as it is named besides what the search took: nothing else is like it.
+pub(crate) fn named_besides(effect: &dyn Effect, parameters: Vec<ParameterEntry>, evidence: Evidence) -> NamedEffect {
+    let page = effect.page();
     NamedEffect {
         id: page.id.to_owned(),
         name: page.name.to_owned(),
         equation: page.equation.to_owned(),
-        parameters: knocks.entries(),
-        evidence: evidence(&knocks.without, &knocks.with, 1),
+        parameters,
+        evidence,
         alternatives: Vec::new(),
         separating_test: page.test.to_owned(),
     }
+}
+
+/// The mass behind `knocks`.
+pub(crate) fn knocking(knocks: &InertialTransient) -> NamedEffect {
+    let evidence = evidence(&knocks.without, &knocks.with, 1);
+    named_besides(InertialTransient::effect(), knocks.entries(), evidence)
 }
 
 /// What the muscle has been through when the recordings end, where that goes on in others.

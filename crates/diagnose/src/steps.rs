@@ -102,7 +102,7 @@ const OTHERS: usize = 4;
 /// Parts from which on one of them may jump as much: where a recording begins, friction is as something before it left it.
 const MANY: usize = 8;
 
-/// Whether a jump of `own_n` in the given part stands alone among the largest of the parts in which drives stir at all; its
+/// Whether a jump of `own_n` in the given part stands alone among the largest of the parts in which drives stir, or rest, at all; its
 /// neighbours do not count, for it may reach into them.
 pub(crate) fn stands_alone(largest_n: &[Option<f64>; PARTS], part: usize, own_n: f64) -> bool {
     let elsewhere = largest_n.iter().enumerate().filter(|(other, _)| other.abs_diff(part) > 1);

@@ -15,22 +15,22 @@ use crate::verdict::{Sizes, verdict};
 /// other name was left 16 % or more.
 const SWALLOWED: f64 = 0.1;
 
-/// Looks for terms beside the names of `found`, lets go of those that terms replace, and looks again; not beside
-/// `knocks`, whose mass has sizes of its own. The verdict, and the terms.
+/// Looks for terms beside the names of `found`, lets go of those that terms replace, and looks again; not where
+/// something was named `besides`, which has sizes of its own. The verdict, and the terms.
 pub(crate) fn beside_names(
     setting: &Setting<'_>,
     found: &mut Found,
     sizes: &mut Sizes,
     limits: &Limits,
-    knocks: bool,
+    besides: bool,
     held: Option<HeldAgainst<'_>>,
 ) -> (Verdict, Option<Discovery>) {
     loop {
-        let said = verdict(found, sizes, knocks);
+        let said = verdict(found, sizes, besides);
         let discovery = discover(setting, found, sizes, said, held);
         let replaced = discovery
             .as_ref()
-            .filter(|_| !knocks)
+            .filter(|_| !besides)
             .and_then(|discovery| replaced(setting, found, &discovery.best.state));
         let Some(index) = replaced else { return (said, discovery) };
         let id = found.best.state.guesses[index].id();

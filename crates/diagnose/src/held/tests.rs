@@ -3,20 +3,8 @@ use super::*;
 use pam_artifact::ModelArtifact;
 use pam_identification::prepare::Prepared;
 
+use crate::coverage::tests::trace_of;
 use crate::given::tests::{STROKES, artifact, diagnosed, recorded};
-
-/// Four samples, of which the last does not count.
-fn trace_of(pressure_pa: [f64; 4], missed_n: [f64; 4]) -> Trace {
-    Trace {
-        time_s: vec![0.0, 0.1, 0.2, 0.3],
-        pressure_pa: pressure_pa.to_vec(),
-        length_m: vec![0.25, 0.24, 0.23, 0.22],
-        force_n: missed_n.map(|missed_n| 100.0 + missed_n).to_vec(),
-        model_n: vec![100.0; 4],
-        direction: vec![1.0; 4],
-        settled: vec![true, true, true, false],
-    }
-}
 
 /// The same strokes, begun a little later.
 fn later(time_s: f64) -> (f64, f64) {
