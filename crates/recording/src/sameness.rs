@@ -16,6 +16,8 @@ const PROBES: usize = 24;
 const PROBE_ROWS: usize = 24;
 /// Places where a run could be, for each that is taken: the one that flickers most.
 const CHOICE: usize = 4;
+/// Rows of a run that are off its most frequent value, at least: of runs of two values with as many, one in ten million is the same by chance.
+const OF_OTHER_VALUES: usize = 10;
 /// Half of the last digit that other units leave, as a share of the largest value.
 const TOLERANCE: f64 = 1.5e-4;
 /// Correlation of second differences beyond which noise is the same.
@@ -120,7 +122,7 @@ fn probes(recording: &Recording) -> io::Result<Vec<Probe>> {
             let start = first + choice * (last - first) / CHOICE;
             let Some(probe) = probe(recording, start)? else { continue };
             let flicker = probe.flicker();
-            if flicker > 0.0 && best.as_ref().is_none_or(|best| flicker > best.0) {
+            if probe.tells() && best.as_ref().is_none_or(|best| flicker > best.0) {
                 best = Some((flicker, probe));
             }
         }
@@ -160,6 +162,13 @@ impl Probe {
         let channel = self.noisy_channel();
         let largest = self.rows.iter().map(|row| row[channel].abs()).fold(f64::MIN_POSITIVE, f64::max);
         Self::bends(&self.rows, channel).map(|bend| bend * bend).sum::<f64>().sqrt() / largest
+    }
+
+    /// Whether its rows are like no others: one value with some spikes in it comes again by chance.
+    fn tells(&self) -> bool {
+        let values = self.rows.map(|row| row[self.noisy_channel()]);
+        let alike = |value: f64| values.iter().filter(|other| **other == value).count();
+        PROBE_ROWS - values.into_iter().map(alike).max().unwrap_or(0) >= OF_OTHER_VALUES
     }
 
     /// Whether it flickers as noise does.

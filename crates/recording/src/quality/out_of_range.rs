@@ -13,10 +13,14 @@ const GUARD_S: f64 = 0.025;
 
 /// A channel that flickers by so many of its steps is not at one value for long by chance.
 const STEPS: f64 = 2.0;
+/// Share of its span that a channel without noise is off by for having been computed.
+const ROUNDED: f64 = 1e-9;
 
 impl ChannelQuality {
+    /// Whether noise moves it wherever it rests: one with a dead band stands still at its highest value as it does at others.
     fn flickers(&self) -> bool {
-        self.quantization_step.is_none_or(|step| self.noise > STEPS * step)
+        let arithmetic = ROUNDED * (self.highest - self.lowest);
+        self.noise > STEPS * self.quantization_step.unwrap_or(arithmetic)
     }
 
     /// Whether the low end that the channel is stuck at is the end of its range, rather than where the muscle itself
@@ -171,6 +175,21 @@ mod tests {
         assert!(lost(&short).is_empty());
         let ends = SensorEnds::of([&quality(&long), &quality(&short)].into_iter());
         assert_eq!(ends.reached(&short, &quality(&short)).unwrap(), std::iter::once(494..509).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_gauge_that_stands_still_wherever_it_rests_is_at_no_end() {
+        let mut held = clipped(-1e3);
+        let level_pa = |pulse: i32| 1e5 + 4e4 * f64::from(pulse.min(8)).sqrt();
+        let rising = |row: i32| f64::from((row % 200).min(50)) / 50.0;
+        let pressure_pa = (0..2000)
+            .map(|row| level_pa(row / 200) + rising(row) * (level_pa(row / 200 + 1) - level_pa(row / 200)))
+            .collect::<Vec<f64>>();
+        let chunk = held.samples.chunk(0).unwrap();
+        held.samples = Samples::from_columns(chunk.time_s(), &pressure_pa, chunk.length_m(), chunk.force_n());
+        let quality = RecordingQuality::of(&held).unwrap();
+        let pressure = quality.channel("pressure").unwrap();
+        assert!(pressure.clipped_high_share > 0.2 && !pressure.ends_high(), "{pressure:?}");
     }
 
     #[test]

@@ -59,6 +59,18 @@ fn a_recording_is_known_in_other_units_cut_and_thinned_out() {
 }
 
 #[test]
+fn two_runs_that_stand_still_with_a_spike_now_and_then_are_two() {
+    let still = |seed: u64| {
+        let [time_s, pressure_pa, length_m, _] = run(1, 0.0);
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(seed);
+        let force_n = pressure_pa.iter().map(|_| if generator.random_bool(0.1) { -8.0 } else { -8.7 }).collect();
+        let [pressure_pa, length_m] = [pressure_pa, length_m].map(|column| vec![column[0]; column.len()]);
+        recording(&[time_s, pressure_pa, length_m, force_n], |_| true, false)
+    };
+    assert!(!shared(&still(1), &still(2)));
+}
+
+#[test]
 fn a_stretch_that_was_pasted_in_again_is_found_and_a_path_that_is_run_again_is_not() {
     let columns = run(1, 1.0);
     let again = |rows: std::ops::Range<usize>, at: usize| {
