@@ -7,7 +7,7 @@ use pam_artifact::model::Assumed;
 use pam_artifact::{Input, InputRole, ModelArtifact, Tool};
 use pam_cli::{Console, Output, Verdict, publish, read_recordings, write_example};
 use pam_identification::faults::apart::{self, Apart};
-use pam_identification::faults::{disagree, noise, reading, shaken, spikes, twice, zero};
+use pam_identification::faults::{dead_band, disagree, noise, reading, shaken, spikes, twice, zero};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Identified, Request, check};
 use pam_identification::report::implausible;
@@ -98,6 +98,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     artifact.warnings.extend(disagree::notes(&recordings, &found.muscle)?);
     artifact.warnings.extend(noise::words(found.estimation.iter().chain(&found.validation), &found.model, None)?);
     artifact.warnings.extend(twice::repeated(recordings.iter().map(|(recording, _)| *recording))?);
+    artifact.warnings.extend(dead_band::words(recordings.iter().copied()));
     let apart = apart::find(&found)?;
     artifact.warnings.extend(apart.as_ref().map(Apart::words));
     // Instruments are suspected where a fit ends at no muscle; what they explain is searched for then.

@@ -91,6 +91,7 @@ pub(crate) fn noticed(
     let all = || estimation.iter().chain(holdout);
     let mut words = out_of_range(all);
     words.extend(faults::noise::words(all(), base, Some(faults::reading::own_n(model)))?);
+    words.extend(faults::dead_band::words(all().map(|prepared| (&prepared.recording, &prepared.quality))));
     words.extend(faults::twice::repeated(all().map(|prepared| &prepared.recording))?);
     Ok(words)
 }

@@ -7,6 +7,7 @@ use pam_muscle::{Dimension, MuscleFile};
 use pam_optim::summary::Summary;
 use pam_recording::quality::ChannelQuality;
 
+use crate::faults::and_others;
 use crate::faults::lag::Lag;
 use crate::identify::Identified;
 use crate::prepare::Prepared;
@@ -376,15 +377,6 @@ pub fn implausible(found: &Identified) -> Option<String> {
             odd.join(", ")
         )
     })
-}
-
-/// How many more recordings a warning holds for.
-fn and_others(n: usize) -> String {
-    match n {
-        0 => String::new(),
-        1 => " and another".to_owned(),
-        n => format!(" and {n} others"),
-    }
 }
 
 /// "above" or "below" as a reader of the artifact sees it: the modulus is the inverse of what is fitted.

@@ -4,12 +4,13 @@
 //! [`spikes`] and [`frozen`] find samples that no muscle makes, [`shaken`] those at which a hand shakes it; [`scale`] finds units that ranges do not show, [`zero`], after a fit,
 //! a gauge whose zero is elsewhere;
 //! [`channels`] finds swapped channels and a force of the wrong sign; [`disagree`] finds recordings that contradict one another, [`stood`] those that do because a channel stands at a wrong value;
-//! [`apart`], after a fit, one recording of several whose instrument reads otherwise; [`twice`] finds a recording that is there twice; [`noise`] says where noise hides everything; [`lag`] finds a channel that lags the others; [`reading`] says what an
-//! instrument would have to read wrong where a model that is known misses a recording. All but the last two and [`apart`] refuse the recording,
+//! [`apart`], after a fit, one recording of several whose instrument reads otherwise; [`twice`] finds a recording that is there twice; [`dead_band`] says where a gauge stands still; [`noise`] says where noise hides everything; [`lag`] finds a channel that lags the others; [`reading`] says what an
+//! instrument would have to read wrong where a model that is known misses a recording. All but the last two, [`dead_band`] and [`apart`] refuse the recording,
 //! because a fit would absorb the fault in its parameters.
 
 pub mod apart;
 pub mod channels;
+pub mod dead_band;
 pub mod disagree;
 pub mod frozen;
 pub mod lag;
@@ -26,6 +27,15 @@ pub mod zero;
 
 use crate::prepare::Gated;
 use pam_muscle::Muscle;
+
+/// How many more recordings a warning holds for.
+pub(crate) fn and_others(n: usize) -> String {
+    match n {
+        0 => String::new(),
+        1 => " and another".to_owned(),
+        n => format!(" and {n} others"),
+    }
+}
 
 /// A fault that makes a fit pointless.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

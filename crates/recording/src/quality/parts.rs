@@ -129,9 +129,25 @@ impl Sample {
         [squares, colored_squares].map(|squares| (squares / f64::max(rows, 1.0)).sqrt())
     }
 
-    /// Whether the channel `index`, which is `channel`, can be told to be stuck: only one that flickers between its steps can.
+    /// Whether the channel `index`, which is `channel`, can be told to be stuck: only one that flickers between its steps can, and
+    /// one without steps that does not stand still, as one with a dead band does, wherever it rests.
     pub(super) fn tells_stuck(&self, index: usize, channel: &ChannelQuality) -> bool {
-        let flickers = |step: f64| self.flicker(COLUMNS[index])[0] > 0.5 * step;
-        channel.highest > channel.lowest && channel.quantization_step.is_none_or(flickers)
+        let tells = match channel.quantization_step {
+            Some(step) => self.flicker(COLUMNS[index])[0] > 0.5 * step,
+            None => !self.stands_still(COLUMNS[index], channel),
+        };
+        channel.highest > channel.lowest && tells
+    }
+
+    /// Whether most values of a column that are at neither end of `channel` are those of the row before.
+    fn stands_still(&self, column: Column, channel: &ChannelQuality) -> bool {
+        let is_within = |value: f64| value > channel.lowest && value < channel.highest;
+        let pairs = self.chunks.iter().flat_map(|chunk| column(chunk).windows(2));
+        let (mut within, mut still) = (0_usize, 0_usize);
+        for pair in pairs.filter(|pair| is_within(pair[0]) && is_within(pair[1])) {
+            within += 1;
+            still += usize::from(pair[0] == pair[1]);
+        }
+        2 * still > within
     }
 }
