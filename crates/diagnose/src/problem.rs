@@ -127,7 +127,10 @@ impl<'a> DiagnosisProblem<'a> {
         let direction = self.model.direction;
         let without = &outcome.found.best.held_out;
         let steps = RestingStep::all(self.estimation, &outcome.track, direction, muscle, without)?;
-        for step in steps.into_iter().filter(|step| step.all_instants_n > matters_n) {
+        // One that the search found elsewhere would be lost.
+        let found = outcome.found.best.state.terms();
+        let keeps = |step: &RestingStep| found.iter().all(|term| !step.loses(term));
+        for step in steps.into_iter().filter(|step| step.all_instants_n > matters_n && keeps(step)) {
             let track = step.taken_off(outcome.track.clone(), muscle);
             let (found, sizes) = beside.search(&track, looked)?;
             let may_leave =

@@ -28,6 +28,9 @@ use jump::{Jump, Rows};
 /// Catalogue id of what jumps.
 pub(crate) const ID: &str = "force-step";
 
+/// By how much a search on the grid is off of the instant of a step, at most, in s.
+const SAME_S: f64 = 0.5;
+
 /// A step of the force at rest.
 #[derive(Debug, Clone)]
 pub(crate) struct RestingStep {
@@ -96,6 +99,13 @@ impl RestingStep {
             step
         };
         beginnings.map(step).collect()
+    }
+
+    /// Whether `term` is a step at another instant.
+    pub(crate) fn loses(&self, term: &Term) -> bool {
+        let is_here =
+            |shape: &[f64]| shape[0] == self.guess.shape[0] && (shape[1] - self.guess.shape[1]).abs() < SAME_S;
+        term.effect.page().id == ID && !is_here(&term.shape)
     }
 
     /// Whether it comes faster than anything does that a muscle does.
@@ -200,6 +210,15 @@ mod tests {
         assert!(difference_n(0) == 0.0 && (difference_n(1499) - 9.0).abs() < 0.5, "{step:?}");
         let of_all = (1500.0 - 615.0) / 1500.0;
         assert!((step.all_instants_n - 9.0 * f64::sqrt(of_all)).abs() < 0.5, "{step:?}");
+    }
+
+    #[test]
+    fn a_step_that_was_found_at_the_same_instant_is_not_lost_and_one_elsewhere_is() {
+        let given = pulsed(|time_s| if time_s < 12.3 { 0.0 } else { 9.0 });
+        let step = RestingStep::largest(&[given.jump()], &given.track, &given.muscle, &held_out()).swap_remove(0);
+        let at = |instant_s: f64| Term { shape: vec![0.0, instant_s], ..step.term() };
+        assert!(!step.loses(&at(12.35)) && step.loses(&at(14.0)));
+        assert!(step.loses(&Term { shape: vec![1.0, 12.3], ..step.term() }));
     }
 
     #[test]
