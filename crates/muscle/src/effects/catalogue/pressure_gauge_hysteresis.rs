@@ -24,7 +24,7 @@ impl Effect for PressureGaugeHysteresis {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "slip_pressure_pa", symbol: "r", unit: "Pa", range: (2e2, 1e5), grid: &[1e3, 3e3, 1e4, 3e4] }]
+        &[Shape { name: "slip_pressure_pa", symbol: "r", unit: "Pa", range: (2e2, 3e4), grid: &[1e3, 3e3, 1e4, 2e4] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
