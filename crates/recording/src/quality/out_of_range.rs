@@ -174,10 +174,23 @@ mod tests {
     }
 
     #[test]
+    fn a_gauge_whose_noise_is_half_of_its_step_is_at_an_end_where_it_is_clipped_between_two_steps() {
+        let mut held = clipped(-1e3);
+        let noise = |row: i32| f64::from(row * 7919 % 1013) / 506.0 - 1.0;
+        let read = |row: i32| ((1e5 + 50.0 * f64::from(row.min(1500)) + 600.0 * noise(row)) / 760.0).round() * 760.0;
+        let pressure_pa: Vec<f64> = (0..2000).map(|row| read(row).min(1.402e5)).collect();
+        let chunk = held.samples.chunk(0).unwrap();
+        held.samples = Samples::from_columns(chunk.time_s(), &pressure_pa, chunk.length_m(), chunk.force_n());
+        let quality = RecordingQuality::of(&held).unwrap();
+        let pressure = quality.channel("pressure").unwrap();
+        assert!(pressure.clipped_high_share > 0.2, "{pressure:?}");
+    }
+
+    #[test]
     fn a_gauge_that_stands_still_wherever_it_rests_is_at_no_end() {
         let mut held = clipped(-1e3);
         let level_pa = |pulse: i32| 1e5 + 4e4 * f64::from(pulse.min(8)).sqrt();
-        let rising = |row: i32| f64::from((row % 200).min(50)) / 50.0;
+        let rising = |row: i32| f64::from((row % 200).min(20)) / 20.0;
         let pressure_pa = (0..2000)
             .map(|row| level_pa(row / 200) + rising(row) * (level_pa(row / 200 + 1) - level_pa(row / 200)))
             .collect::<Vec<f64>>();

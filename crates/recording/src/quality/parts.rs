@@ -84,6 +84,10 @@ impl Extent {
     }
 }
 
+/// Share of the rows in which a channel reads as in the row before, beyond which it stands still wherever it rests: 0.6 of a gauge whose
+/// noise is half of its step, 0.93 of one with a dead band of eight steps.
+const STANDS_STILL: f64 = 0.8;
+
 /// Chunks that noise and quantization are estimated on.
 pub(super) struct Sample {
     pub(super) chunks: Vec<Chunk>,
@@ -139,7 +143,7 @@ impl Sample {
         channel.highest > channel.lowest && tells
     }
 
-    /// Whether most values of a column that are at neither end of `channel` are those of the row before.
+    /// Whether values of a column that are at neither end of `channel` are nearly always those of the row before.
     fn stands_still(&self, column: Column, channel: &ChannelQuality) -> bool {
         let is_within = |value: f64| value > channel.lowest && value < channel.highest;
         let pairs = self.chunks.iter().flat_map(|chunk| column(chunk).windows(2));
@@ -148,6 +152,6 @@ impl Sample {
             within += 1;
             still += usize::from(pair[0] == pair[1]);
         }
-        2 * still > within
+        still as f64 > STANDS_STILL * within as f64
     }
 }
