@@ -51,6 +51,7 @@ fn another_muscle_is_missed_by_far_more_than_others_and_wherever_it_goes() {
     assert!(!is_of_another(3.9, 2.0, 1.0, 1.0), "by no more than a memory that goes on");
     assert!(!is_of_another(5.0, 2.0, 1.0, 2.6), "by no more than others");
     assert!(!is_of_another(5.0, 1.4, 1.0, 2.0), "at a few stretches");
+    assert!(is_of_another(11.0, 1.4, 1.0, 2.0), "at a few stretches, by far");
 }
 
 #[test]
