@@ -23,8 +23,8 @@ const SIDE: usize = CELLS + 2 * MARGIN;
 impl Coverage {
     /// Of the samples of `traces`.
     pub(crate) fn of(traces: &[Trace]) -> Self {
-        let pressure_pa = range(traces.iter().flat_map(|trace| &trace.pressure_pa));
-        let length_m = range(traces.iter().flat_map(|trace| &trace.length_m));
+        let pressure_pa = range(traces.iter().flat_map(|trace| trace.pressure_pa.iter().copied()));
+        let length_m = range(traces.iter().flat_map(|trace| trace.length_m.iter().copied()));
         let mut coverage = Self { pressure_pa, length_m, visited: vec![false; SIDE * SIDE] };
         for trace in traces {
             for (&pressure_pa, &length_m) in trace.pressure_pa.iter().zip(&trace.length_m) {
@@ -70,8 +70,9 @@ impl Coverage {
     }
 }
 
-fn range<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
+/// Lowest and highest of `values`.
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use pam_muscle::motion::Instant;
 
+use crate::coverage;
 use crate::state::{Setting, State};
 
 /// Instants per recording that are tried for a difference between all before and all after, and as many for a difference
@@ -77,11 +78,7 @@ fn stirred(setting: &Setting<'_>, range: std::ops::Range<usize>) -> Vec<bool> {
             end += 1;
         }
         let near = &instants[first..end];
-        let range_of = |value: &dyn Fn(&Instant) -> f64| {
-            near.iter()
-                .map(value)
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
-        };
+        let range_of = |value: &dyn Fn(&Instant) -> f64| coverage::range(near.iter().map(value));
         let starts = channels.iter().zip(largest).any(|(channel, largest)| {
             let (low, high) = range_of(channel);
             low < RESTS * largest && high > MOVES * largest

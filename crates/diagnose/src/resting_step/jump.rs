@@ -7,6 +7,7 @@ use pam_identification::prepare::Prepared;
 use pam_muscle::direction::Thresholds;
 use pam_muscle::motion::Instant;
 
+use crate::coverage;
 use crate::steps::{PARTS, stands_alone};
 use crate::track::Track;
 
@@ -159,10 +160,7 @@ fn resting(track: &Track, range: &Range<usize>, direction: Thresholds) -> Vec<us
     let rests = |at: &usize| {
         let near = &track.instants[at - REST..at + REST];
         let swing = |of: fn(&Instant) -> f64| {
-            let (low, high) = near
-                .iter()
-                .map(of)
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+            let (low, high) = coverage::range(near.iter().map(of));
             high - low
         };
         track.counted[at - REST..at + REST].iter().all(|counted| *counted)
