@@ -40,7 +40,7 @@ impl Desk {
         let desk = Self { folder: tempfile::tempdir().unwrap() };
         let MuscleFile { muscle, strand_modulus_pa, .. } = muscle_file();
         let truth = TrueMuscle::new(muscle, strand_modulus_pa, Parameters::nominal());
-        let options = Options { duration_scale: 0.2, ..Options::default() };
+        let options = Options { duration_scale: 0.1, ..Options::default() };
         for (seed, protocol) in FITTED.into_iter().chain(["multisine"]).enumerate() {
             let command = command(protocol, &truth, &options).unwrap();
             let bench = Bench::new(truth.clone(), command).with_effects(concealed, 1).unwrap();

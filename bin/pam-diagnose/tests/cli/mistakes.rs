@@ -89,7 +89,7 @@ fn every_mistake_gets_one_line_with_place_and_remedy() {
     error: rewritten.csv: has the same samples as isobaric-triangles.csv, which is fitted; a hold-out must be a recording that nothing was fitted to
     error: still.csv: force never varies (it is 7.5 N in every row); check the load cell and the column that holds it, or for a dead weight leave the column out and give --fixed force_N=7.5
     error: held.csv: pressure stays at 300 kPa throughout; check its wiring, or leave the recording out
-    error: clipped.csv: force stands at 300.0 N, the end of its range, in 51 % of the samples; the sensor is saturated: leave the recording out, or take a sensor with more range
+    error: clipped.csv: force stands at 300.0 N, the end of its range, in 56 % of the samples; the sensor is saturated: leave the recording out, or take a sensor with more range
     error: other.csv: length runs from 270.8 to 328.5 mm, which a muscle of rest length 267.0 mm cannot have (it would be stretched by more than a tenth, or its strands straight); check that the recording and the model belong together, or go on with --accept-implausible
     error: short.csv: 2.0 s of motion in all is too short to judge by; record at least 3 s more (blocks of some seconds are held out in turn)
     error: empty.csv: the file holds no rows; record again, or check that the logger closed the file

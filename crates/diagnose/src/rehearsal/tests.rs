@@ -68,7 +68,7 @@ impl Given {
         };
         let takes: Vec<Take> =
             names.iter().flat_map(|name| protocols::named(name).expect("a protocol").takes(&reach)).collect();
-        let mut track = Rehearsal::with_steps(&takes, &reach, 0.02).track;
+        let mut track = Rehearsal::with_steps(&takes, &reach, 0.04).track;
         for (index, range) in track.recordings.iter().enumerate() {
             let rows = range.len();
             for piece in 0..8 {
