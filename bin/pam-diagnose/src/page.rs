@@ -1,17 +1,16 @@
 //! The report of a diagnosis, from the artifact and the samples behind it.
 
-use pam_artifact::diagnosis::{AsGiven, BeforeAfter, Evidence, NamedEffect, Region, Verdict};
+use pam_artifact::diagnosis::{NamedEffect, NextExperiment, Region};
 use pam_artifact::model::{ParameterEntry, ParameterStatus};
 use pam_artifact::{DiagnosisArtifact, InputRole, ModelArtifact};
 use pam_diagnosis::traces::Trace;
 use pam_muscle::Coordinate;
+use pam_muscle::effects::CATALOGUE;
 use pam_muscle::effects::page::Confusion;
 use pam_muscle::effects::symbols::{symbol_of_base, symbol_of_effect};
-use pam_muscle::effects::{CATALOGUE, Symbol};
 use pam_report::{
     DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageEffect, PageEstimate,
-    PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter,
-    PageRecording, PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
+    PageInput, PageParameter, PageRecording, PageUnknown,
 };
 
 use crate::empirical;
@@ -36,18 +35,12 @@ pub(crate) fn page(
     let with_effects = has_additions(artifact);
     DiagnosisPage {
         title: format!("Diagnosis of {}", model.muscle_title()),
-        verdict: match artifact.verdict {
-            Verdict::Consistent => PageVerdict::Consistent,
-            Verdict::Explained => PageVerdict::Explained,
-            Verdict::ExplainedInPart => PageVerdict::ExplainedInPart,
-            Verdict::Ambiguous => PageVerdict::Ambiguous,
-            Verdict::Unexplained => PageVerdict::Unexplained,
-        },
+        verdict: artifact.verdict,
         statement: artifact.statement.clone(),
         warnings: artifact.warnings.clone(),
-        as_given: artifact.as_given.as_ref().map(given),
-        estimation: fit(&artifact.fit.estimation),
-        holdout: artifact.fit.holdout.as_ref().map(fit),
+        as_given: artifact.as_given.clone(),
+        estimation: artifact.fit.estimation,
+        holdout: artifact.fit.holdout,
         base_parameters: if with_effects { base_parameters(model, augmented) } else { Vec::new() },
         recordings: traces.into_iter().map(|trace| recording(trace, artifact, with_effects)).collect(),
         regions: significant(&artifact.regions).map(region).collect(),
@@ -60,39 +53,21 @@ pub(crate) fn page(
             .map(|candidate| PageCandidate {
                 id: candidate.id.clone(),
                 name: name(&candidate.id, own),
-                evidence: evidence(&candidate.evidence),
+                evidence: candidate.evidence,
                 explains: candidate.explains,
                 outcome: candidate.outcome.clone(),
             })
             .collect(),
         unknown: PageUnknown {
             regions: significant(&artifact.unexplained_where).map(region).collect(),
-            implausible: artifact
-                .implausible
-                .iter()
-                .map(|entry| PageImplausible {
-                    parameter: entry.parameter.clone(),
-                    value: entry.value,
-                    unit: entry.unit.clone(),
-                    plausible: entry.plausible,
-                    likely_cause: entry.likely_cause.clone(),
-                })
-                .collect(),
+            implausible: artifact.implausible.clone(),
         },
-        next_experiment: artifact.next_experiment.as_ref().map(|next| PageExperiment {
-            protocol: next.protocol.clone(),
+        next_experiment: artifact.next_experiment.as_ref().map(|next| NextExperiment {
             // What has no name is nothing that a reader could look up.
             separates: next.separates.iter().filter(|id| own.page(id).is_some()).cloned().collect(),
-            separation_n: next.separation_n,
-            instruction: next.instruction.clone(),
+            ..next.clone()
         }),
-        isolability: Some(&artifact.isolability).filter(|isolability| !isolability.ids.is_empty()).map(|isolability| {
-            PageIsolability {
-                ids: isolability.ids.clone(),
-                visible_n: isolability.visible_n.clone(),
-                cosine: isolability.cosine.clone(),
-            }
-        }),
+        isolability: Some(&artifact.isolability).filter(|isolability| !isolability.ids.is_empty()).cloned(),
         appendix: appendix(artifact, model, provenance),
     }
 }
@@ -139,33 +114,6 @@ fn name(id: &str, own: &OwnEffects) -> String {
     own.page(id).map_or(String::new(), |page| page.name.to_owned())
 }
 
-fn fit(fit: &BeforeAfter) -> PageFit {
-    let BeforeAfter { rmse_before_n, rmse_after_n, rmse_all_before_n, rmse_all_after_n, noise_floor_n } = *fit;
-    PageFit { rmse_before_n, rmse_after_n, rmse_all_before_n, rmse_all_after_n, noise_floor_n }
-}
-
-fn given(given: &AsGiven) -> PageGiven {
-    PageGiven {
-        rmse_n: [given.estimation.rmse_n, given.estimation.rmse_all_n],
-        holdout_rmse_n: given.holdout.map(|residual| [residual.rmse_n, residual.rmse_all_n]),
-        refitted_rmse_n: given.refitted.rmse_n,
-        misses: given.misses,
-        instrument: given.instrument.clone(),
-        holdout_missed: given.holdout_missed.clone(),
-        shifts: given
-            .shifts
-            .iter()
-            .map(|shift| PageShift {
-                parameter: shift.parameter.clone(),
-                given: shift.given,
-                refitted: shift.refitted,
-                unit: shift.unit.clone(),
-                standard_errors: shift.standard_errors,
-            })
-            .collect(),
-    }
-}
-
 /// Probability by chance above which a region is not shown.
 const CHANCE: f64 = 0.05;
 
@@ -178,20 +126,8 @@ pub(crate) fn significant(regions: &[Region]) -> impl Iterator<Item = &Region> {
         .map(|(_, region)| region)
 }
 
-fn region(region: &Region) -> PageRegion {
-    PageRegion {
-        coordinate: region.coordinate,
-        from: region.from,
-        to: region.to,
-        share_of_excess: region.share_of_excess,
-        p_value: region.p_value,
-        recording: region.recording.as_deref().map(short_name),
-    }
-}
-
-fn evidence(evidence: &Evidence) -> PageEvidence {
-    let Evidence { log_ratio, rmse_without_n, rmse_with_n, blocks_improved, n_blocks, p_value } = *evidence;
-    PageEvidence { log_ratio, rmse_without_n, rmse_with_n, blocks_improved, n_blocks, p_value }
+fn region(region: &Region) -> Region {
+    Region { recording: region.recording.as_deref().map(short_name), ..region.clone() }
 }
 
 fn effect(effect: &NamedEffect, own: &OwnEffects) -> PageEffect {
@@ -203,11 +139,11 @@ fn effect(effect: &NamedEffect, own: &OwnEffects) -> PageEffect {
         summary: page.map_or(String::new(), |page| page.summary.to_owned()),
         signature: page.map_or(String::new(), |page| page.signature.to_owned()),
         equation: effect.equation.clone(),
-        symbols: page.map_or(&[][..], |page| page.symbols).iter().map(symbol).collect(),
+        symbols: page.map_or(Vec::new(), |page| page.symbols.to_vec()),
         validity: page.map_or(String::new(), |page| page.validity.to_owned()),
         source: page.map_or(String::new(), |page| page.source.to_owned()),
         parameters: effect.parameters.iter().map(|entry| parameter(&effect.id, entry)).collect(),
-        evidence: evidence(&effect.evidence),
+        evidence: effect.evidence,
         alternatives: effect.alternatives.iter().map(|id| alternative(id, confusions, own)).collect(),
         look_alikes: confusions
             .iter()
@@ -216,10 +152,6 @@ fn effect(effect: &NamedEffect, own: &OwnEffects) -> PageEffect {
             .collect(),
         separating_test: effect.separating_test.clone(),
     }
-}
-
-fn symbol(symbol: &Symbol) -> PageSymbol {
-    PageSymbol { symbol: symbol.symbol.to_owned(), unit: symbol.unit.to_owned(), meaning: symbol.meaning.to_owned() }
 }
 
 /// Effect `id` with what the page of the effect that it is mistaken for says of it.

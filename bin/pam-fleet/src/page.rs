@@ -1,6 +1,5 @@
 //! The page of a fleet, from its survey.
 
-use pam_artifact::diagnosis::Verdict;
 use pam_fleet_survey::change::Change;
 use pam_fleet_survey::control::Chart;
 use pam_fleet_survey::groups::GroupShift;
@@ -8,7 +7,7 @@ use pam_fleet_survey::record::Record;
 use pam_fleet_survey::survey::Survey;
 use pam_report::number::{engineering, engineering_with_stderr, significant};
 use pam_report::{
-    FleetCampaign, FleetChange, FleetChart, FleetPage, FleetPoint, FleetRefusal, FleetShift, FleetStanding, PageVerdict,
+    FleetCampaign, FleetChange, FleetChart, FleetPage, FleetPoint, FleetRefusal, FleetShift, FleetStanding,
 };
 
 /// Everything that the page shows; `folder` is the way from the page to the folders of the campaigns, and none where there
@@ -73,13 +72,7 @@ fn campaign(record: &Record, folder: Option<&str>) -> FleetCampaign {
             () if record.rejections().next().is_some() => "rejected",
             () => "accepted",
         },
-        verdict: diagnosed.map(|diagnosed| match diagnosed.verdict {
-            Verdict::Consistent => PageVerdict::Consistent,
-            Verdict::Explained => PageVerdict::Explained,
-            Verdict::ExplainedInPart => PageVerdict::ExplainedInPart,
-            Verdict::Ambiguous => PageVerdict::Ambiguous,
-            Verdict::Unexplained => PageVerdict::Unexplained,
-        }),
+        verdict: diagnosed.map(|diagnosed| diagnosed.verdict),
         effects: diagnosed.map_or(Vec::new(), |diagnosed| {
             diagnosed.effects.iter().map(|effect| (effect.id.clone(), effect.worth_n)).collect()
         }),

@@ -5,11 +5,11 @@
 use std::f64::consts::PI;
 use std::io::Write as _;
 
+use pam_artifact::diagnosis::{BeforeAfter, Evidence, Implausible, Isolability, NextExperiment, Region, Verdict};
 use pam_muscle::Coordinate;
 use pam_report::{
-    ConfusionFigure, DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageEffect, PageEvidence,
-    PageExperiment, PageFit, PageImplausible, PageInput, PageIsolability, PageParameter, PageRecording, PageRegion,
-    PageUnknown, PageVerdict, SignatureFigure, SignaturePanel, SignatureSeries, confusion_figure, diagnosis_page,
+    ConfusionFigure, DiagnosisPage, PageAlternative, PageAppendix, PageCandidate, PageEffect, PageInput, PageParameter,
+    PageRecording, PageUnknown, SignatureFigure, SignaturePanel, SignatureSeries, confusion_figure, diagnosis_page,
     signature_figure,
 };
 
@@ -107,8 +107,8 @@ fn isometric(length_mm: f64, effect: bool) -> PageRecording {
     })
 }
 
-fn evidence(log_ratio: f64, rmse_with_n: f64, blocks_improved: usize, p_value: f64) -> PageEvidence {
-    PageEvidence { log_ratio, rmse_without_n: 2.29, rmse_with_n, blocks_improved, n_blocks: 24, p_value }
+fn evidence(log_ratio: f64, rmse_with_n: f64, blocks_improved: usize, p_value: f64) -> Evidence {
+    Evidence { log_ratio, rmse_without_n: 2.29, rmse_with_n, blocks_improved, n_blocks: 24, p_value }
 }
 
 fn candidates() -> Vec<PageCandidate> {
@@ -120,7 +120,7 @@ fn candidates() -> Vec<PageCandidate> {
         (3, "viscous damping", evidence(0.4, 2.26, 13, 0.61), 0.01, "no evidence"),
         (11, "drift of the load cell", evidence(-0.9, 2.31, 9, 1.0), 0.0, "no evidence"),
     ];
-    let candidate = |(id, name, evidence, explains, outcome): (usize, &str, PageEvidence, f64, &str)| PageCandidate {
+    let candidate = |(id, name, evidence, explains, outcome): (usize, &str, Evidence, f64, &str)| PageCandidate {
         id: IDS[id].to_owned(),
         name: name.to_owned(),
         evidence,
@@ -179,11 +179,11 @@ fn effect() -> PageEffect {
     }
 }
 
-fn region(coordinate: Coordinate, from: f64, to: f64, share_of_excess: f64, p_value: f64) -> PageRegion {
-    PageRegion { coordinate, from, to, share_of_excess, p_value, recording: None }
+fn region(coordinate: Coordinate, from: f64, to: f64, share_of_excess: f64, p_value: f64) -> Region {
+    Region { coordinate, from, to, unit: coordinate.unit().to_owned(), share_of_excess, p_value, recording: None }
 }
 
-fn isolability() -> PageIsolability {
+fn isolability() -> Isolability {
     let near = |a: usize, b: usize| match (a.min(b), a.max(b)) {
         (0, 10) => 0.97,
         (0, 1) => 0.88,
@@ -194,7 +194,7 @@ fn isolability() -> PageIsolability {
         (a, b) if a == b => 1.0,
         (a, b) => ((a * 7 + b * 13) % 11) as f64 * 0.04,
     };
-    PageIsolability {
+    Isolability {
         ids: IDS.map(str::to_owned).to_vec(),
         visible_n: vec![2.1, 1.4, 0.9, 0.7, 0.8, 1.9, 0.4, 2.6, 1.2, 0.5, 1.7, 0.25],
         cosine: (0..12).map(|a| (0..12).map(|b| near(a, b)).collect()).collect(),
@@ -202,7 +202,7 @@ fn isolability() -> PageIsolability {
 }
 
 /// Root mean squares over settled samples, before and after.
-fn fit(recordings: &[PageRecording], held_out: bool) -> PageFit {
+fn fit(recordings: &[PageRecording], held_out: bool) -> BeforeAfter {
     let rmse_n = |after: bool| {
         let squares: Vec<f64> = recordings
             .iter()
@@ -215,7 +215,7 @@ fn fit(recordings: &[PageRecording], held_out: bool) -> PageFit {
         (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
     };
     let (before_n, after_n) = (rmse_n(false), rmse_n(true));
-    PageFit {
+    BeforeAfter {
         rmse_before_n: before_n,
         rmse_after_n: after_n,
         rmse_all_before_n: before_n,
@@ -236,7 +236,7 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
     let inputs = [("model", "model.json"), ("estimation", "isobaric-150kPa.csv"), ("held out", "isobaric-300kPa.csv")];
     let mut page = DiagnosisPage {
         title: "Diagnosis of the 267 mm muscle".to_owned(),
-        verdict: PageVerdict::Consistent,
+        verdict: Verdict::Consistent,
         statement: "Model and recordings differ by no more than the noise of the load cell.".to_owned(),
         warnings: Vec::new(),
         as_given: None,
@@ -270,7 +270,7 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
         },
     };
     if effect_is_there {
-        page.verdict = PageVerdict::Ambiguous;
+        page.verdict = Verdict::Ambiguous;
         page.statement = "The model leaves out pre-sliding hysteresis of the braid; a compliance in series would look \
                           the same in these recordings."
             .to_owned();
@@ -284,7 +284,7 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
         page.candidates = candidates();
         page.unknown = PageUnknown {
             regions: vec![region(Coordinate::Speed, 0.0, 0.4e-3, 0.02, 0.03)],
-            implausible: vec![PageImplausible {
+            implausible: vec![Implausible {
                 parameter: "k1".to_owned(),
                 value: 1.19,
                 unit: "1".to_owned(),
@@ -292,7 +292,7 @@ fn page(effect_is_there: bool) -> DiagnosisPage {
                 likely_cause: "a pressure gauge that reads too low, or a rest radius that is too small".to_owned(),
             }],
         };
-        page.next_experiment = Some(PageExperiment {
+        page.next_experiment = Some(NextExperiment {
             protocol: "minor-loops".to_owned(),
             separates: vec![IDS[0].to_owned(), IDS[10].to_owned()],
             separation_n: 1.8,

@@ -1,7 +1,7 @@
 //! Tables and figures, as text for whoever writes it.
 //!
-//! Nothing here prints, opens a file or knows a muscle: figures take plain columns and give an SVG document,
-//! tables take cells and give lines. Equal input gives equal bytes.
+//! Nothing here prints, opens a file or evaluates a model: figures take plain columns and give an SVG document, tables take cells and
+//! give lines, and pages draw what artifacts have, in the artifacts' own types. Equal input gives equal bytes.
 //!
 //! In reading order: [`number`] (how numbers are written), [`Table`], [`text`] (what fits a terminal), [`plot`] (what figures are made of),
 //! [`fit_figure()`] (the figure of a fit), [`prediction_figure()`] (of a prediction), [`inverse_figure()`] (of an inverse), [`lift_figure()`] (of a lift),
@@ -33,9 +33,7 @@ pub use change_page::{ChangePage, PageChange, PageCompared, change_page};
 pub use confusion_figure::{ConfusionFigure, confusion_figure};
 pub use diagnosis_page::{
     DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageEffect, PageEmpirical,
-    PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability,
-    PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageTerm, PageUnknown, PageVerdict,
-    diagnosis_page,
+    PageEstimate, PageInput, PageParameter, PageRecording, PageTerm, PageUnknown, diagnosis_page,
 };
 pub use envelope_figure::{EnvelopeFigure, envelope_figure};
 pub use error::FigureError;

@@ -6,12 +6,15 @@
     reason = "a test that fails may panic, and one that skips says so"
 )]
 
+use pam_artifact::diagnosis::{
+    AsGiven, BeforeAfter, Evidence, Implausible, Isolability, NextExperiment, Region, Residual, Shift, Verdict,
+};
 use pam_muscle::Coordinate;
+use pam_muscle::effects::Symbol;
 use pam_report::{
     ConfusionFigure, DiagnosisPage, FigureError, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate,
-    PageEffect, PageEstimate, PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput,
-    PageIsolability, PageParameter, PageRecording, PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
-    SignatureFigure, SignaturePanel, SignatureSeries, confusion_figure, diagnosis_page, signature_figure,
+    PageEffect, PageEstimate, PageInput, PageParameter, PageRecording, PageUnknown, SignatureFigure, SignaturePanel,
+    SignatureSeries, confusion_figure, diagnosis_page, signature_figure,
 };
 
 const SHARP: &str = "<b>&\"'</p>\u{0}";
@@ -39,11 +42,12 @@ fn recording(name: &str, n: usize, effect: bool) -> PageRecording {
     }
 }
 
-fn region(coordinate: Coordinate) -> PageRegion {
-    PageRegion {
+fn region(coordinate: Coordinate) -> Region {
+    Region {
         coordinate,
         from: 0.0,
         to: 0.1,
+        unit: "1".to_owned(),
         share_of_excess: 0.5,
         p_value: 1e-20,
         recording: Some(SHARP.to_owned()),
@@ -53,7 +57,7 @@ fn region(coordinate: Coordinate) -> PageRegion {
 /// Every section filled; `SHARP` wherever a text may stand.
 fn full() -> DiagnosisPage {
     let text = || SHARP.to_owned();
-    let evidence = PageEvidence {
+    let evidence = Evidence {
         log_ratio: 12.0,
         rmse_without_n: 2.0,
         rmse_with_n: 1.0,
@@ -61,7 +65,7 @@ fn full() -> DiagnosisPage {
         n_blocks: 10,
         p_value: 1e-5,
     };
-    let fit = PageFit {
+    let fit = BeforeAfter {
         rmse_before_n: 2.0,
         rmse_after_n: 1.0,
         rmse_all_before_n: 2.2,
@@ -73,21 +77,22 @@ fn full() -> DiagnosisPage {
     held_out.held_out = true;
     DiagnosisPage {
         title: text(),
-        verdict: PageVerdict::Explained,
+        verdict: Verdict::Explained,
         statement: text(),
         warnings: vec![text()],
-        as_given: Some(PageGiven {
-            rmse_n: [76.0, 77.0],
-            holdout_rmse_n: Some([80.0, 81.0]),
-            refitted_rmse_n: 2.0,
+        as_given: Some(AsGiven {
+            estimation: Residual { rmse_n: 76.0, rmse_all_n: 77.0 },
+            holdout: Some(Residual { rmse_n: 80.0, rmse_all_n: 81.0 }),
+            refitted: Residual { rmse_n: 2.0, rmse_all_n: 2.1 },
             misses: true,
             instrument: Some(text()),
             holdout_missed: vec![text()],
-            shifts: vec![PageShift {
+            shifts: vec![Shift {
                 parameter: text(),
                 given: 0.9,
                 refitted: 1.03,
                 unit: text(),
+                stderr: Some(0.003),
                 standard_errors: Some(40.0),
             }],
         }),
@@ -108,7 +113,7 @@ fn full() -> DiagnosisPage {
             summary: text(),
             signature: text(),
             equation: format!("F_a = {SHARP}^2"),
-            symbols: vec![PageSymbol { symbol: text(), unit: text(), meaning: text() }],
+            symbols: vec![Symbol { symbol: SHARP, unit: SHARP, meaning: SHARP }],
             validity: text(),
             source: text(),
             parameters: vec![PageParameter {
@@ -130,7 +135,7 @@ fn full() -> DiagnosisPage {
         candidates: vec![PageCandidate { id: text(), name: text(), evidence, explains: 0.4, outcome: text() }],
         unknown: PageUnknown {
             regions: vec![region(Coordinate::Speed)],
-            implausible: vec![PageImplausible {
+            implausible: vec![Implausible {
                 parameter: text(),
                 value: 2.0,
                 unit: text(),
@@ -138,13 +143,13 @@ fn full() -> DiagnosisPage {
                 likely_cause: text(),
             }],
         },
-        next_experiment: Some(PageExperiment {
+        next_experiment: Some(NextExperiment {
             protocol: text(),
             separates: vec![text(), text()],
             separation_n: 2.0,
             instruction: text(),
         }),
-        isolability: Some(PageIsolability {
+        isolability: Some(Isolability {
             ids: (0..26).map(|index| format!("an-effect-with-a-long-name-{index}{SHARP}")).collect(),
             visible_n: vec![0.1; 26],
             cosine: (0..26).map(|a| (0..26).map(|b| if a == b { 1.0 } else { 0.96 }).collect()).collect(),
@@ -161,14 +166,14 @@ fn full() -> DiagnosisPage {
 }
 
 /// Nothing but what every diagnosis has.
-fn bare(verdict: PageVerdict, recordings: Vec<PageRecording>) -> DiagnosisPage {
+fn bare(verdict: Verdict, recordings: Vec<PageRecording>) -> DiagnosisPage {
     DiagnosisPage {
         title: "bare".to_owned(),
         verdict,
         statement: String::new(),
         warnings: Vec::new(),
         as_given: None,
-        estimation: PageFit {
+        estimation: BeforeAfter {
             rmse_before_n: 0.7,
             rmse_after_n: 0.7,
             rmse_all_before_n: 0.7,
@@ -265,7 +270,7 @@ fn every_color_of_a_figure_has_a_counterpart_in_the_dark() {
 
 #[test]
 fn agreement_without_anything_else_is_a_page() {
-    let html = diagnosis_page(&bare(PageVerdict::Consistent, vec![recording("a.csv", 3000, false)])).unwrap();
+    let html = diagnosis_page(&bare(Verdict::Consistent, vec![recording("a.csv", 3000, false)])).unwrap();
     check_document(&html);
     for text in ["Model and recordings agree", "no recording was held out", "Nowhere: no stretch", "Nothing was added"]
     {
@@ -276,7 +281,7 @@ fn agreement_without_anything_else_is_a_page() {
 
 #[test]
 fn a_mismatch_without_a_name_is_a_page() {
-    let html = diagnosis_page(&bare(PageVerdict::Unexplained, Vec::new())).unwrap();
+    let html = diagnosis_page(&bare(Verdict::Unexplained, Vec::new())).unwrap();
     check_document(&html);
     assert!(html.contains("No effect of the catalogue explains"));
     assert!(html.contains("No samples were handed over"));
@@ -313,20 +318,20 @@ fn degenerate_samples_give_a_page() {
     gone.base_force_n.fill(f64::NAN);
     let all = vec![recording("one", 1, true), recording("none", 0, false), still, holes, gone];
     for recording in all.clone() {
-        check_document(&diagnosis_page(&bare(PageVerdict::Unexplained, vec![recording.clone()])).unwrap());
+        check_document(&diagnosis_page(&bare(Verdict::Unexplained, vec![recording.clone()])).unwrap());
         let mut page = full();
         page.recordings = vec![recording];
         check_document(&diagnosis_page(&page).unwrap());
     }
-    let mut page = bare(PageVerdict::Unexplained, all);
-    page.estimation = PageFit {
+    let mut page = bare(Verdict::Unexplained, all);
+    page.estimation = BeforeAfter {
         rmse_before_n: f64::NAN,
         rmse_after_n: f64::NAN,
         rmse_all_before_n: f64::NAN,
         rmse_all_after_n: f64::NAN,
         noise_floor_n: f64::NAN,
     };
-    page.holdout = Some(PageFit {
+    page.holdout = Some(BeforeAfter {
         rmse_before_n: 0.0,
         rmse_after_n: 0.0,
         rmse_all_before_n: 0.0,
@@ -350,7 +355,7 @@ fn long_and_many_recordings_give_a_page_of_bounded_size() {
 
 #[test]
 fn unequal_columns_are_refused() {
-    let mut page = bare(PageVerdict::Consistent, vec![recording("short.csv", 10, false)]);
+    let mut page = bare(Verdict::Consistent, vec![recording("short.csv", 10, false)]);
     page.recordings[0].settled.pop();
     let message = diagnosis_page(&page).unwrap_err().to_string();
     assert_eq!(message, "recording short.csv: column settled has 9 samples, expected 10 as in time_s");

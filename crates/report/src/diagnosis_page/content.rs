@@ -1,6 +1,9 @@
 //! Content of the page, section by section.
 
-use pam_muscle::Coordinate;
+use pam_artifact::diagnosis::{
+    AsGiven, BeforeAfter, Evidence, Implausible, Isolability, NextExperiment, Region, Verdict,
+};
+use pam_muscle::effects::Symbol;
 
 use super::{PageEmpirical, PageRecording};
 
@@ -10,23 +13,23 @@ pub struct DiagnosisPage {
     /// Title of the document, such as the muscle's name.
     pub title: String,
     /// The verdict.
-    pub verdict: PageVerdict,
+    pub verdict: Verdict,
     /// The verdict in one sentence.
     pub statement: String,
     /// Warnings to read before the diagnosis is used.
     pub warnings: Vec<String>,
     /// The model before it was refitted; none where that is not known.
-    pub as_given: Option<PageGiven>,
+    pub as_given: Option<AsGiven>,
     /// Residuals before and after, on the recordings that the effects were fitted to.
-    pub estimation: PageFit,
+    pub estimation: BeforeAfter,
     /// The same on recordings that nothing was fitted to.
-    pub holdout: Option<PageFit>,
+    pub holdout: Option<BeforeAfter>,
     /// Base parameters before and after.
     pub base_parameters: Vec<PageBaseParameter>,
     /// The samples.
     pub recordings: Vec<PageRecording>,
     /// Where model and recordings differ, the largest share first; empty where they agree.
-    pub regions: Vec<PageRegion>,
+    pub regions: Vec<Region>,
     /// Effects that were left out, in order of evidence.
     pub effects: Vec<PageEffect>,
     /// Terms that model the part without a name.
@@ -38,9 +41,9 @@ pub struct DiagnosisPage {
     /// Open questions.
     pub unknown: PageUnknown,
     /// The recording to make next, where that would tell more.
-    pub next_experiment: Option<PageExperiment>,
+    pub next_experiment: Option<NextExperiment>,
     /// Effects that the recordings can distinguish at all.
-    pub isolability: Option<PageIsolability>,
+    pub isolability: Option<Isolability>,
     /// How the diagnosis came about.
     pub appendix: PageAppendix,
 }
@@ -55,40 +58,6 @@ impl DiagnosisPage {
             (false, false) => Some("effects and empirical terms"),
         }
     }
-}
-
-/// The model as it was given, before it was refitted.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageGiven {
-    /// Residual on the recordings used for fitting: over counted and over all samples, in N.
-    pub rmse_n: [f64; 2],
-    /// Residual on held-out recordings, likewise.
-    pub holdout_rmse_n: Option<[f64; 2]>,
-    /// Residual of the refitted model, in N.
-    pub refitted_rmse_n: f64,
-    /// Whether it misses the recordings by clearly more than the refitted model does.
-    pub misses: bool,
-    /// Fault of an instrument that would explain that, in words.
-    pub instrument: Option<String>,
-    /// Held-out recordings that are missed, in words.
-    pub holdout_missed: Vec<String>,
-    /// Free base parameters, the one that moved most first.
-    pub shifts: Vec<PageShift>,
-}
-
-/// How far a refit moves a parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageShift {
-    /// Name.
-    pub parameter: String,
-    /// Value as given.
-    pub given: f64,
-    /// Value after the refit.
-    pub refitted: f64,
-    /// Unit of both.
-    pub unit: String,
-    /// Difference over its standard error; none where that is not known.
-    pub standard_errors: Option<f64>,
 }
 
 /// A base parameter, composite or dimension before and after the effects were added.
@@ -117,53 +86,6 @@ pub struct PageEstimate {
     pub status: String,
 }
 
-/// The verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PageVerdict {
-    /// Model and recordings agree.
-    Consistent,
-    /// The named effects explain the mismatch.
-    Explained,
-    /// They explain part of it.
-    ExplainedInPart,
-    /// They do, and so do others.
-    Ambiguous,
-    /// Structure is left without a name.
-    Unexplained,
-}
-
-/// Root mean squares of residuals. The mismatch of the page, wherever it is spoken of, is `rmse_before_n`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PageFit {
-    /// Base model over counted samples, in N.
-    pub rmse_before_n: f64,
-    /// Base model and effects over counted samples, in N.
-    pub rmse_after_n: f64,
-    /// Base model over all samples, reversals included, in N.
-    pub rmse_all_before_n: f64,
-    /// Base model and effects over all samples, in N.
-    pub rmse_all_after_n: f64,
-    /// Noise floor of any model, in N.
-    pub noise_floor_n: f64,
-}
-
-/// An interval of one coordinate in which the residual exceeds the noise floor.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageRegion {
-    /// Coordinate.
-    pub coordinate: Coordinate,
-    /// Lower end, SI as in the artifact; the page converts it to the unit that people use.
-    pub from: f64,
-    /// Upper end, SI as in the artifact.
-    pub to: f64,
-    /// Share of the excess that lies inside, in [0, 1].
-    pub share_of_excess: f64,
-    /// Probability by chance.
-    pub p_value: f64,
-    /// Name of the recording that it lies in, where it lies in one.
-    pub recording: Option<String>,
-}
-
 /// An effect that was left out of the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PageEffect {
@@ -178,7 +100,7 @@ pub struct PageEffect {
     /// The equation that was fitted.
     pub equation: String,
     /// Its symbols.
-    pub symbols: Vec<PageSymbol>,
+    pub symbols: Vec<Symbol>,
     /// When it holds; may be empty.
     pub validity: String,
     /// Where the equation comes from.
@@ -186,24 +108,13 @@ pub struct PageEffect {
     /// Its parameters.
     pub parameters: Vec<PageParameter>,
     /// Why it is believed.
-    pub evidence: PageEvidence,
+    pub evidence: Evidence,
     /// Effects that these recordings cannot tell from it.
     pub alternatives: Vec<PageAlternative>,
     /// Effects that other recordings may not tell from it.
     pub look_alikes: Vec<PageAlternative>,
     /// The test that distinguishes them, or confirms the effect.
     pub separating_test: String,
-}
-
-/// A symbol of an equation.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PageSymbol {
-    /// As in the equation.
-    pub symbol: String,
-    /// Unit; `1` where it has none.
-    pub unit: String,
-    /// Meaning, and the usual range of a parameter.
-    pub meaning: String,
 }
 
 /// A parameter of an effect.
@@ -223,23 +134,6 @@ pub struct PageParameter {
     pub stderr: Option<f64>,
     /// How the value came about, in words: `fitted`, `at the end of its range`; may be empty.
     pub status: String,
-}
-
-/// Evidence from held-out blocks.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PageEvidence {
-    /// Sum over held-out blocks of `ln(mean square without / mean square with)`.
-    pub log_ratio: f64,
-    /// Held-out RMSE without it, in N.
-    pub rmse_without_n: f64,
-    /// Held-out RMSE with it, in N.
-    pub rmse_with_n: f64,
-    /// Held-out blocks that it improves.
-    pub blocks_improved: usize,
-    /// Held-out blocks.
-    pub n_blocks: usize,
-    /// Probability by chance.
-    pub p_value: f64,
 }
 
 /// An effect that looks alike.
@@ -263,7 +157,7 @@ pub struct PageCandidate {
     /// Name in words; may be empty.
     pub name: String,
     /// Evidence alone, against the base model.
-    pub evidence: PageEvidence,
+    pub evidence: Evidence,
     /// Share of the mean square over blocks left out of the fit that it takes away alone, in [0, 1].
     pub explains: f64,
     /// Its outcome in words.
@@ -274,48 +168,9 @@ pub struct PageCandidate {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PageUnknown {
     /// Where structure is left.
-    pub regions: Vec<PageRegion>,
+    pub regions: Vec<Region>,
     /// Base parameters that no such muscle has.
-    pub implausible: Vec<PageImplausible>,
-}
-
-/// A base parameter that no such muscle has.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageImplausible {
-    /// Parameter or composite.
-    pub parameter: String,
-    /// Value.
-    pub value: f64,
-    /// Unit.
-    pub unit: String,
-    /// Lowest and highest plausible value.
-    pub plausible: [f64; 2],
-    /// The usual cause.
-    pub likely_cause: String,
-}
-
-/// A recording that would tell more.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageExperiment {
-    /// Protocol.
-    pub protocol: String,
-    /// Hypotheses that it would decide between.
-    pub separates: Vec<String>,
-    /// How far apart it would drive them, in N.
-    pub separation_n: f64,
-    /// How to do it.
-    pub instruction: String,
-}
-
-/// Effects that recordings can distinguish.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageIsolability {
-    /// Catalogue ids.
-    pub ids: Vec<String>,
-    /// Residual that each effect would leave at a typical size, in N.
-    pub visible_n: Vec<f64>,
-    /// Cosine between the residuals of each pair, row by row.
-    pub cosine: Vec<Vec<f64>>,
+    pub implausible: Vec<Implausible>,
 }
 
 /// How the diagnosis came about.

@@ -1,10 +1,12 @@
 //! Sections at the end: improvement, what is unknown, the next recording, provenance.
 
+use pam_artifact::diagnosis::NextExperiment;
+
 use super::headline::share_explained;
 use super::loops::{Stretch, loops};
 use super::place::regions_table;
 use super::samples::Samples;
-use super::{DiagnosisPage, PageAppendix, PageBaseParameter, PageEstimate, PageExperiment, whiteness};
+use super::{DiagnosisPage, PageAppendix, PageBaseParameter, PageEstimate, whiteness};
 use crate::escape::escaped;
 use crate::number::{engineering, engineering_with_stderr, significant};
 use crate::page::html::{figure, heading, list, newtons, paragraph, percent, remark, symbol_table, table};
@@ -130,7 +132,7 @@ fn base_parameters(parameters: &[PageBaseParameter]) -> Table {
 }
 
 /// Section: what to record next.
-pub(super) fn next(experiment: Option<&PageExperiment>) -> String {
+pub(super) fn next(experiment: Option<&NextExperiment>) -> String {
     let Some(experiment) = experiment else {
         return paragraph("Nothing: nothing is in question that another recording would decide.");
     };

@@ -1,6 +1,7 @@
 //! Figure: residuals before and after as bars, with the noise floor across them.
 
-use super::PageFit;
+use pam_artifact::diagnosis::BeforeAfter;
+
 use crate::FigureError;
 use crate::page::html::newtons;
 use crate::page::style::{AFTER, BEFORE};
@@ -12,7 +13,11 @@ const BAR: f64 = 22.0;
 const WIDTH: f64 = 540.0;
 
 /// Draws a pair of bars for each entry of `fits`; one bar where nothing was added to the model.
-pub(super) fn fit_bars(title: &str, fits: &[(&str, PageFit)], additions: Option<&str>) -> Result<String, FigureError> {
+pub(super) fn fit_bars(
+    title: &str,
+    fits: &[(&str, BeforeAfter)],
+    additions: Option<&str>,
+) -> Result<String, FigureError> {
     let after = additions.is_some();
     let group = if after { 2.0 * BAR + 34.0 } else { BAR + 34.0 };
     let height = 44.0 + group * fits.len() as f64 + 46.0;

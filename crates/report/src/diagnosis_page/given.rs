@@ -1,6 +1,7 @@
 //! The model as it was given: what it misses before anything is refitted, and how far a refit moves its parameters.
 
-use super::PageGiven;
+use pam_artifact::diagnosis::AsGiven;
+
 use crate::Table;
 use crate::number::{engineering, significant};
 use crate::page::html::{heading, list, newtons, paragraph, table};
@@ -9,9 +10,8 @@ use crate::page::html::{heading, list, newtons, paragraph, table};
 const HARDLY: f64 = 0.05;
 
 /// Part of the section on the mismatch.
-pub(super) fn given(given: &PageGiven) -> String {
-    let held_out =
-        given.holdout_rmse_n.map_or(String::new(), |[rmse_n, _]| format!(", {} on held-out ones", newtons(rmse_n)));
+pub(super) fn given(given: &AsGiven) -> String {
+    let held_out = given.holdout.map_or(String::new(), |left| format!(", {} on held-out ones", newtons(left.rmse_n)));
     let verdict = if given.misses {
         " It misses them: they are of another muscle, or an instrument reads otherwise."
     } else {
@@ -20,8 +20,8 @@ pub(super) fn given(given: &PageGiven) -> String {
     let mut html = heading("The model as given")
         + &paragraph(&format!(
             "Before anything is refitted the model leaves {} on these recordings{held_out}; refitted it leaves {}.{verdict}",
-            newtons(given.rmse_n[0]),
-            newtons(given.refitted_rmse_n)
+            newtons(given.estimation.rmse_n),
+            newtons(given.refitted.rmse_n)
         ));
     if let Some(instrument) = &given.instrument {
         html.push_str(&paragraph(&format!("An instrument alone would explain that: {instrument}.")));

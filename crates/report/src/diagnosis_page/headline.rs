@@ -1,16 +1,18 @@
 //! Top of the page: verdict, statement, the figures that matter.
 
-use super::{DiagnosisPage, PageFit, PageVerdict};
+use pam_artifact::diagnosis::{BeforeAfter, Verdict};
+
+use super::DiagnosisPage;
 use crate::escape::escaped;
 use crate::page::html::{card, list, newtons, percent};
 
 pub(super) fn headline(page: &DiagnosisPage) -> String {
     let (class, words) = match page.verdict {
-        PageVerdict::Consistent => ("consistent", "Model and recordings agree"),
-        PageVerdict::Explained => ("explained", "The mismatch is explained"),
-        PageVerdict::ExplainedInPart => ("explained-in-part", "The mismatch is explained in part"),
-        PageVerdict::Ambiguous => ("ambiguous", "The mismatch has more than one explanation"),
-        PageVerdict::Unexplained => ("unexplained", "Unmodelled structure is left"),
+        Verdict::Consistent => ("consistent", "Model and recordings agree"),
+        Verdict::Explained => ("explained", "The mismatch is explained"),
+        Verdict::ExplainedInPart => ("explained-in-part", "The mismatch is explained in part"),
+        Verdict::Ambiguous => ("ambiguous", "The mismatch has more than one explanation"),
+        Verdict::Unexplained => ("unexplained", "Unmodelled structure is left"),
     };
     let words = match &page.as_given {
         Some(given) if given.misses => "The model as given is not that of these recordings",
@@ -46,13 +48,13 @@ pub(super) fn headline(page: &DiagnosisPage) -> String {
 }
 
 /// Share of the excess over the noise floor, mean squares, that is gone afterwards; none where there was none.
-pub(super) fn share_explained(fit: PageFit) -> Option<f64> {
+pub(super) fn share_explained(fit: BeforeAfter) -> Option<f64> {
     let excess = |rmse_n: f64| rmse_n * rmse_n - fit.noise_floor_n * fit.noise_floor_n;
     let before = excess(fit.rmse_before_n);
     (before > 0.0).then(|| (1.0 - excess(fit.rmse_after_n) / before).clamp(0.0, 1.0))
 }
 
-fn card_of_fit(label: &str, fit: PageFit, after: bool) -> String {
+fn card_of_fit(label: &str, fit: BeforeAfter, after: bool) -> String {
     let all = newtons(fit.rmse_all_before_n);
     if !after {
         let note = format!("RMSE of the base model, counted samples; {all} over all samples");

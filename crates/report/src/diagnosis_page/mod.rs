@@ -40,11 +40,12 @@ mod whiteness;
 
 pub use content::{
     DiagnosisPage, PageAlternative, PageAppendix, PageBaseParameter, PageCandidate, PageEffect, PageEstimate,
-    PageEvidence, PageExperiment, PageFit, PageGiven, PageImplausible, PageInput, PageIsolability, PageParameter,
-    PageRegion, PageShift, PageSymbol, PageUnknown, PageVerdict,
+    PageInput, PageParameter, PageUnknown,
 };
 pub use empirical::{PageEmpirical, PageTerm};
 pub use recording::PageRecording;
+
+use pam_artifact::diagnosis::{BeforeAfter, Residual, Verdict};
 
 use crate::page::html::{self, compact_figure, newtons, paragraph};
 use crate::page::{Section, document};
@@ -81,7 +82,7 @@ pub fn diagnosis_page(page: &DiagnosisPage) -> Result<String, FigureError> {
 
 /// Section: whether there is a mismatch.
 fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
-    let PageFit { rmse_before_n, noise_floor_n, .. } = page.estimation;
+    let BeforeAfter { rmse_before_n, noise_floor_n, .. } = page.estimation;
     let factor = rmse_before_n / noise_floor_n;
     let times = if factor.is_finite() {
         format!(", {factor:.1} times the noise floor of {}", newtons(noise_floor_n))
@@ -91,13 +92,11 @@ fn mismatch(page: &DiagnosisPage) -> Result<String, FigureError> {
     // Where only the model as given misses the recordings, its refit follows them.
     let refit_follows = page.regions.is_empty() && page.effects.is_empty() && page.unknown.regions.is_empty();
     let verdict = match page.verdict {
-        PageVerdict::Unexplained if refit_follows => {
-            "The verdict is that of the model as given and of what was held out."
-        }
-        PageVerdict::Consistent => {
+        Verdict::Unexplained if refit_follows => "The verdict is that of the model as given and of what was held out.",
+        Verdict::Consistent => {
             "That is within what noise, the uncertainty of the parameters or the limit of what matters allow."
         }
-        PageVerdict::Explained | PageVerdict::ExplainedInPart | PageVerdict::Ambiguous | PageVerdict::Unexplained => {
+        Verdict::Explained | Verdict::ExplainedInPart | Verdict::Ambiguous | Verdict::Unexplained => {
             "More than noise and the uncertainty of the parameters allow."
         }
     };
@@ -124,18 +123,20 @@ fn side_by_side(page: &DiagnosisPage) -> Table {
     let mut table = Table::new(header);
     let given = page.as_given.as_ref();
     let fits = [
-        ("estimation", Some(page.estimation), given.map(|given| given.rmse_n)),
-        ("held out", page.holdout, given.and_then(|given| given.holdout_rmse_n)),
+        ("estimation", Some(page.estimation), given.map(|given| given.estimation)),
+        ("held out", page.holdout, given.and_then(|given| given.holdout)),
     ];
-    for (name, fit, given_n) in fits {
+    for (name, fit, left) in fits {
         let Some(fit) = fit else { continue };
+        let counted: fn(Residual) -> f64 = |left| left.rmse_n;
+        let all: fn(Residual) -> f64 = |left| left.rmse_all_n;
         let rows = [
-            (name, "counted", 0, fit.rmse_before_n, fit.rmse_after_n, newtons(fit.noise_floor_n)),
-            ("", "all", 1, fit.rmse_all_before_n, fit.rmse_all_after_n, String::new()),
+            (name, "counted", counted, fit.rmse_before_n, fit.rmse_after_n, newtons(fit.noise_floor_n)),
+            ("", "all", all, fit.rmse_all_before_n, fit.rmse_all_after_n, String::new()),
         ];
-        for (name, samples, which, before_n, after_n, floor) in rows {
+        for (name, samples, of, before_n, after_n, floor) in rows {
             let mut cells = vec![name.to_owned(), samples.to_owned()];
-            cells.extend(given.map(|_| given_n.map_or("–".to_owned(), |given_n| newtons(given_n[which]))));
+            cells.extend(given.map(|_| left.map_or("–".to_owned(), |left| newtons(of(left)))));
             cells.push(newtons(before_n));
             cells.extend(after.then(|| newtons(after_n)));
             cells.push(floor);

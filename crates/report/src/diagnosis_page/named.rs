@@ -1,6 +1,8 @@
 //! Section: which effects were left out of the model.
 
-use super::{DiagnosisPage, PageAlternative, PageCandidate, PageEffect, PageEvidence, PageParameter, PageVerdict};
+use pam_artifact::diagnosis::{Evidence, Verdict};
+
+use super::{DiagnosisPage, PageAlternative, PageCandidate, PageEffect, PageParameter};
 use crate::escape::escaped;
 use crate::number::{engineering, engineering_with_stderr, probability, significant};
 use crate::page::html::{equation, heading, newtons, paragraph, remark, symbol_table, symbols, table};
@@ -8,7 +10,7 @@ use crate::{Table, number};
 
 pub(super) fn named(page: &DiagnosisPage) -> String {
     let mut html = match page.effects.len() {
-        0 if page.verdict == PageVerdict::Consistent => paragraph("Nothing that matters in these recordings."),
+        0 if page.verdict == Verdict::Consistent => paragraph("Nothing that matters in these recordings."),
         0 => paragraph("No effect of the catalogue explains the mismatch."),
         1 => paragraph("One effect that the model leaves out is named."),
         n => paragraph(&format!(
@@ -122,8 +124,8 @@ fn parameters(parameters: &[PageParameter]) -> Table {
     table
 }
 
-fn evidence(evidence: &PageEvidence) -> String {
-    let PageEvidence { log_ratio, rmse_without_n, rmse_with_n, blocks_improved, n_blocks, p_value } = *evidence;
+fn evidence(evidence: &Evidence) -> String {
+    let Evidence { log_ratio, rmse_without_n, rmse_with_n, blocks_improved, n_blocks, p_value } = *evidence;
     format!(
         "Fitted to all blocks of the recordings but one and judged on that one, in turn, it lowers the residual in \
          {blocks_improved} of {n_blocks} blocks, from {} without it (everything else refitted) to {} with it. The \

@@ -1,8 +1,10 @@
 //! Section: where model and recordings differ.
 
+use pam_artifact::diagnosis::Region;
+
+use super::DiagnosisPage;
 use super::coordinate::OnPage as _;
 use super::samples::Samples;
-use super::{DiagnosisPage, PageRegion};
 use super::{profiles, residual_maps};
 use crate::number::probability;
 use crate::page::html::{figure, heading, paragraph, percent, remark, table};
@@ -49,7 +51,7 @@ pub(super) fn place(page: &DiagnosisPage, recordings: &[Samples]) -> Result<Stri
 }
 
 /// Regions as people read them.
-pub(super) fn regions_table(regions: &[PageRegion]) -> Table {
+pub(super) fn regions_table(regions: &[Region]) -> Table {
     let one_recording = regions.iter().any(|region| region.recording.is_some());
     let mut header = vec!["coordinate", "from–to", "share of the excess", "p"];
     if one_recording {

@@ -1,8 +1,8 @@
 //! Figure: residual against each coordinate, as small multiples of one height.
 
+use pam_artifact::diagnosis::Region;
 use pam_muscle::Coordinate;
 
-use super::PageRegion;
 use super::coordinate::OnPage as _;
 use super::samples::{Samples, extent};
 use crate::FigureError;
@@ -31,7 +31,7 @@ const BINS: usize = 28;
 const FEWEST: f64 = 5.0;
 
 /// Draws the panels.
-pub(super) fn profiles(recordings: &[Samples], regions: &[PageRegion], noise_n: f64) -> Result<String, FigureError> {
+pub(super) fn profiles(recordings: &[Samples], regions: &[Region], noise_n: f64) -> Result<String, FigureError> {
     let profiles: Vec<Profile> = SHOWN.iter().map(|coordinate| Profile::new(*coordinate, recordings)).collect();
     let ends = profiles.iter().flat_map(|profile| profile.before.iter().chain(&profile.after)).flatten();
     let sizes: Vec<f64> = ends.map(|bin| bin.mean.abs() + bin.spread).collect();
@@ -112,7 +112,7 @@ impl Profile {
         Self { coordinate, before, after, axis }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, panel: &Panel, regions: &[PageRegion], noise_n: f64) {
+    fn draw(&self, canvas: &mut Canvas<'_>, panel: &Panel, regions: &[Region], noise_n: f64) {
         let words = self.coordinate.words();
         let title: String = words.chars().take(1).flat_map(char::to_uppercase).chain(words.chars().skip(1)).collect();
         panel.draw_frame(canvas);

@@ -1,8 +1,8 @@
 //! Figure: residual over pressure and contraction, before and after, mean and root mean square.
 
+use pam_artifact::diagnosis::Region;
 use pam_muscle::Coordinate;
 
-use super::PageRegion;
 use super::coordinate::OnPage as _;
 use super::samples::Samples;
 use crate::FigureError;
@@ -14,11 +14,7 @@ use crate::residual_cells::{Channel, quantile};
 const ROW: f64 = 330.0;
 
 /// Draws the maps; those after the effects stand on the right.
-pub(super) fn residual_maps(
-    recordings: &[Samples],
-    regions: &[PageRegion],
-    noise_n: f64,
-) -> Result<String, FigureError> {
+pub(super) fn residual_maps(recordings: &[Samples], regions: &[Region], noise_n: f64) -> Result<String, FigureError> {
     let after = recordings.iter().any(|samples| samples.after_n.is_some());
     let pick = |coordinate| recordings.iter().map(|samples: &Samples| samples.column(coordinate)).collect();
     let pressure = Channel::new("pressure (kPa)", pick(Coordinate::Pressure), 0.05, 0, 26);
@@ -67,7 +63,7 @@ pub(super) fn residual_maps(
 }
 
 /// A bar along the edge of the map over a region of its coordinates.
-fn mark(canvas: &mut Canvas<'_>, grid: &Grid<'_>, panel: &Panel, region: &PageRegion) {
+fn mark(canvas: &mut Canvas<'_>, grid: &Grid<'_>, panel: &Panel, region: &Region) {
     const COLOR: Color = palette::ORANGE;
     let [from, to] = [region.from, region.to].map(|value| region.coordinate.of_si(value));
     let within = |axis: &Axis, value: f64| axis.fraction(value).clamp(0.0, 1.0);

@@ -1,6 +1,7 @@
 //! Section: which effects the recordings can distinguish.
 
-use super::PageIsolability;
+use pam_artifact::diagnosis::Isolability;
+
 use crate::FigureError;
 use crate::number::significant;
 use crate::page::html::{figure, list, newtons, paragraph};
@@ -10,7 +11,7 @@ use crate::plot::{Bins, Canvas, ColorBar, Map};
 /// Above this the residuals of a pair are alike.
 const ALIKE: f64 = 0.95;
 
-pub(super) fn telling_apart(isolability: Option<&PageIsolability>, noise_n: f64) -> Result<String, FigureError> {
+pub(super) fn telling_apart(isolability: Option<&Isolability>, noise_n: f64) -> Result<String, FigureError> {
     let Some(isolability) = isolability.filter(|isolability| !isolability.ids.is_empty()) else {
         return Ok(paragraph("This was not examined."));
     };
@@ -47,7 +48,7 @@ pub(super) fn telling_apart(isolability: Option<&PageIsolability>, noise_n: f64)
 }
 
 /// Pairs whose residuals are alike, the closest first.
-fn alike(isolability: &PageIsolability) -> Vec<String> {
+fn alike(isolability: &Isolability) -> Vec<String> {
     let ids = &isolability.ids;
     let mut pairs = Vec::new();
     for (row, cosines) in isolability.cosine.iter().enumerate().take(ids.len()) {
@@ -61,7 +62,7 @@ fn alike(isolability: &PageIsolability) -> Vec<String> {
     pairs.into_iter().map(|(cosine, a, b)| format!("{} and {} ({cosine:.2})", ids[a], ids[b])).collect()
 }
 
-fn matrix(isolability: &PageIsolability) -> Result<String, FigureError> {
+fn matrix(isolability: &Isolability) -> Result<String, FigureError> {
     let n = isolability.ids.len();
     let names: Vec<String> = isolability
         .ids

@@ -1,8 +1,9 @@
 //! Sections: what was refused, and every campaign.
 
+use pam_artifact::diagnosis::Verdict;
+
 use super::FleetPage;
 use super::standing::linked;
-use crate::PageVerdict;
 use crate::escape::escaped;
 use crate::number::significant;
 use crate::page::html::paragraph;
@@ -64,13 +65,13 @@ pub(super) fn campaigns(page: &FleetPage) -> String {
     html
 }
 
-fn verdict(verdict: Option<PageVerdict>) -> String {
+fn verdict(verdict: Option<Verdict>) -> String {
     let (class, word) = match verdict {
-        Some(PageVerdict::Consistent) => ("consistent", "consistent"),
-        Some(PageVerdict::Explained) => ("explained", "explained"),
-        Some(PageVerdict::ExplainedInPart) => ("explained", "explained in part"),
-        Some(PageVerdict::Ambiguous) => ("ambiguous", "ambiguous"),
-        Some(PageVerdict::Unexplained) => ("unexplained", "unexplained"),
+        Some(Verdict::Consistent) => ("consistent", "consistent"),
+        Some(Verdict::Explained) => ("explained", "explained"),
+        Some(Verdict::ExplainedInPart) => ("explained", "explained in part"),
+        Some(Verdict::Ambiguous) => ("ambiguous", "ambiguous"),
+        Some(Verdict::Unexplained) => ("unexplained", "unexplained"),
         None => ("none", "–"),
     };
     format!("<td class=\"verdict-{class}\">{word}</td>")

@@ -1,6 +1,6 @@
 //! Content of the page.
 
-use crate::PageVerdict;
+use pam_artifact::diagnosis::Verdict;
 
 /// Everything that the page shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ pub struct FleetCampaign {
     /// How it ended: `accepted`, `rejected`, `refused`.
     pub outcome: &'static str,
     /// Verdict of its diagnosis; none where there is no diagnosis.
-    pub verdict: Option<PageVerdict>,
+    pub verdict: Option<Verdict>,
     /// Missing physics by catalogue id, with the force that it explains, root mean square, in N.
     pub effects: Vec<(String, f64)>,
     /// Residual on the estimation recordings, in N; none where there is no model.

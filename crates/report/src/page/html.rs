@@ -1,6 +1,7 @@
 //! Pieces of the document.
 
-use crate::PageSymbol;
+use pam_muscle::effects::Symbol;
+
 use crate::escape::escaped;
 use crate::number::significant;
 
@@ -56,10 +57,10 @@ pub(crate) fn equation(text: &str) -> String {
 }
 
 /// Symbols of an equation with unit and meaning, each symbol set as in the equation.
-pub(crate) fn symbols(symbols: &[PageSymbol]) -> String {
+pub(crate) fn symbols(symbols: &[Symbol]) -> String {
     let rows: String = symbols
         .iter()
-        .map(|PageSymbol { symbol, unit, meaning }| {
+        .map(|Symbol { symbol, unit, meaning }| {
             let (unit, meaning) = (escaped(unit), escaped(meaning));
             format!("<tr><td><em>{}</em></td><td>{unit}</td><td>{meaning}</td></tr>\n", scripts(symbol))
         })
