@@ -102,7 +102,7 @@ impl Export {
         } else {
             prepare_plausible(recording, &self.artifact)?
         };
-        prepared.begin(self.model.base(), self.artifact.direction.standstill)?;
+        prepared.begin_with(&self.model, self.artifact.direction, 0)?;
         Ok(vectors::along(&prepared, &self.model, self.artifact.direction)?)
     }
 

@@ -59,7 +59,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
         console.warn(words);
     }
     let model = for_any_recording(&artifact.augmented_model(), &args.model, &console);
-    prepared.begin(model.base(), artifact.direction.standstill)?;
+    prepared.begin_with(&model, artifact.direction, 0)?;
     // Before anything is written: a model that has no force for what was recorded leaves no file.
     let has_force = prepared.recording.samples.has_force();
     let evaluation = if has_force {

@@ -95,7 +95,7 @@ fn walked(artifact: &ModelArtifact, recording: Recording, accept_implausible: bo
         if accept_implausible { prepare(recording, artifact)? } else { prepare_plausible(recording, artifact)? };
     // Events belong to the recordings that they were found in.
     let model: AugmentedModel = artifact.augmented_model().elsewhere();
-    prepared.begin(model.base(), artifact.direction.standstill)?;
+    prepared.begin_with(&model, artifact.direction, 0)?;
     let mut walked = Walked {
         residuals_n: Vec::with_capacity(n_rows),
         counted: Vec::with_capacity(n_rows),

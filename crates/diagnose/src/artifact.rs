@@ -7,7 +7,7 @@ use pam_artifact::model::{
 };
 use pam_artifact::{Input, Tool};
 use pam_identification::evaluate::{Evaluation, evaluate, evaluate_augmented, evaluate_residuals, noise_floor_n};
-use pam_identification::prepare::Prepared;
+use pam_identification::prepare::{Prepared, begun_at_rest};
 use pam_identification::search_space::Free;
 use pam_muscle::effects::Kind;
 use pam_muscle::force::Parameter;
@@ -58,14 +58,16 @@ impl Agreement {
     pub fn of(diagnosis: &Diagnosis) -> Result<Self, DiagnoseError> {
         let Diagnosis { estimation, holdout, base, augmented, model, .. } = diagnosis;
         let (fitted, residuals) = evaluate_residuals(estimation, augmented, model.direction)?;
-        let base_holdout = evaluate(holdout, base)?;
+        // Each model as it takes friction at rest: no gain comes from a state that suits one of them alone.
+        let as_base = |recordings| begun_at_rest(recordings, base, model.direction.standstill);
+        let base_holdout = evaluate(&as_base(holdout)?, base)?;
         let holdout_without_terms = match (&diagnosis.without_terms, &diagnosis.empirical) {
             (Some(without), _) => evaluate_augmented(holdout, &without.elsewhere(), model.direction)?.together,
             (None, Some(_)) => base_holdout.together,
             (None, None) => None,
         };
         Ok(Self {
-            base_estimation: evaluate(estimation, base)?,
+            base_estimation: evaluate(&as_base(estimation)?, base)?,
             base_holdout,
             holdout_without_terms,
             holdout_everywhere: match &diagnosis.kept_to_fitted {

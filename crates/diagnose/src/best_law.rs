@@ -2,7 +2,7 @@
 
 use pam_artifact::ModelArtifact;
 use pam_identification::evaluate::evaluate_augmented;
-use pam_identification::prepare::{Prepared, redirect};
+use pam_identification::prepare::{Prepared, begin_at_rest, redirect};
 use pam_muscle::direction::Thresholds;
 use pam_muscle::effects::{AugmentedModel, Term};
 
@@ -28,8 +28,11 @@ impl Recordings {
     /// The directions found anew, in the model as well.
     fn redirect(&mut self, model: &mut ModelArtifact, direction: Thresholds) -> Result<(), DiagnoseError> {
         model.direction = direction;
-        redirect(&mut self.estimation, direction, model.form)?;
-        Ok(redirect(&mut self.holdout, direction, model.form)?)
+        for recordings in [&mut self.estimation, &mut self.holdout] {
+            redirect(recordings, direction, model.form)?;
+            begin_at_rest(recordings, &model.force_model(), direction.standstill)?;
+        }
+        Ok(())
     }
 
     /// What is found under the law of friction at standstill that fits best beside it; recordings and model follow that law.

@@ -3,7 +3,7 @@
 use pam_artifact::ModelArtifact;
 use pam_identification::error::IdentifyError;
 use pam_identification::faults;
-use pam_identification::prepare::{Gated, Prepared, direct, gate};
+use pam_identification::prepare::{Gated, Prepared, begin_at_rest, direct, gate};
 use pam_identification::report::out_of_range;
 use pam_muscle::force::ForceModel;
 use pam_recording::Recording;
@@ -44,7 +44,12 @@ pub(crate) fn prepare(
         }
     }
     let holdout = gates.split_off(n_estimation);
-    Ok((direct(gates, model.direction, model.form)?, direct(holdout, model.direction, model.form)?))
+    let found = |gates: Vec<Gated>| -> Result<Vec<Prepared>, IdentifyError> {
+        let mut recordings = direct(gates, model.direction, model.form)?;
+        begin_at_rest(&mut recordings, &model.force_model(), model.direction.standstill)?;
+        Ok(recordings)
+    };
+    Ok((found(gates)?, found(holdout)?))
 }
 
 fn channels(gated: &Gated) -> Result<(), DiagnoseError> {

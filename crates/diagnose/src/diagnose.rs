@@ -6,7 +6,7 @@ use pam_artifact::diagnosis::{
 };
 use pam_artifact::model::EffectEntry;
 use pam_identification::evaluate::{evaluate, noise_floor_n};
-use pam_identification::prepare::Prepared;
+use pam_identification::prepare::{Prepared, begun_at_rest};
 use pam_muscle::effects::{AugmentedModel, Effect, Term};
 use pam_muscle::force::ForceModel;
 use pam_recording::Recording;
@@ -278,8 +278,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let Written { mut entries, effects, empirical, kept, .. } = written;
     let kept_to_fitted = kept.map(|kept| KeptToFitted { everywhere: rig::beside(&rig, &kept.everywhere), ..kept });
     entries.splice(0..0, rig.iter().map(rig::entry));
-    for prepared in estimation.iter_mut().chain(&mut holdout) {
-        prepared.begin(augmented.base(), model.direction.standstill)?;
+    for (index, prepared) in estimation.iter_mut().enumerate() {
+        prepared.begin_with(&augmented, model.direction, index)?;
+    }
+    let elsewhere = augmented.elsewhere();
+    for prepared in &mut holdout {
+        prepared.begin_with(&elsewhere, model.direction, 0)?;
     }
     let diagnosis = Diagnosis {
         verdict,
@@ -323,9 +327,10 @@ fn better_base(
     model: &ModelArtifact,
     refitted: &ForceModel,
 ) -> Result<ForceModel, DiagnoseError> {
-    let identified = model.force_model();
+    let (identified, standstill) = (model.force_model(), model.direction.standstill);
     let rmse_n = |model: &ForceModel| -> Result<f64, DiagnoseError> {
-        Ok(evaluate(estimation, model)?.together.map_or(f64::INFINITY, |together| together.rmse_n))
+        let begun = begun_at_rest(estimation, model, standstill)?;
+        Ok(evaluate(&begun, model)?.together.map_or(f64::INFINITY, |together| together.rmse_n))
     };
     Ok(if rmse_n(&identified)? <= rmse_n(refitted)? { identified } else { refitted.clone() })
 }

@@ -1,7 +1,10 @@
 //! Recordings made ready for a fit: quality gate and direction of motion beside each.
 
+use std::borrow::Cow;
+
 use pam_muscle::Muscle;
 use pam_muscle::direction::{Direction, Driver, Standstill, Thresholds};
+use pam_muscle::effects::AugmentedModel;
 use pam_muscle::force::{ForceModel, Form};
 use pam_recording::Recording;
 use pam_recording::quality::channel::PLAY;
@@ -10,6 +13,7 @@ use rayon::prelude::*;
 
 use crate::error::IdentifyError;
 use crate::faults;
+use crate::predict::walk_augmented;
 
 /// A recording with its quality gate, before a direction is known.
 #[derive(Debug, Clone)]
@@ -33,19 +37,55 @@ pub struct Prepared {
 
 impl Prepared {
     /// Takes what friction was at the beginning of every segment from the force that was recorded there, as `model` has it:
-    /// nothing else tells. Those samples stay unsettled.
+    /// nothing else tells. Those samples stay settled or unsettled as they are.
     ///
     /// # Errors
     /// [`IdentifyError::Samples`] where samples cannot be read back.
     pub fn begin(&mut self, model: &ForceModel, standstill: Standstill) -> Result<(), IdentifyError> {
-        let force_n = |pressure_pa: f64, length_m: f64, state: f64| model.force_n(pressure_pa, length_m, state);
-        let begun = self.direction.begun(&self.recording, standstill, &force_n);
-        if let Some(begun) =
-            begun.map_err(|reason| IdentifyError::Samples { path: self.recording.path.clone(), reason })?
-        {
+        let forces_n = |_: usize, pressure_pa: f64, length_m: f64| {
+            [0.0, 1.0].map(|state| model.force_n(pressure_pa, length_m, state))
+        };
+        self.begin_where(standstill, &forces_n)
+    }
+
+    /// The same with all of an augmented `model` in recording `index` of those that it was fitted to, or in another: where nothing moves,
+    /// every sample counts, and what effects do is not taken for friction.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Samples`] where samples cannot be read back.
+    pub fn begin_with(
+        &mut self,
+        model: &AugmentedModel,
+        thresholds: Thresholds,
+        index: usize,
+    ) -> Result<(), IdentifyError> {
+        if model.is_plain() || self.direction.knows() {
+            return self.begin(model.base(), thresholds.standstill);
+        }
+        let mut forces_n = [Vec::new(), Vec::new()];
+        for (forces_n, state) in forces_n.iter_mut().zip([0.0, 1.0]) {
+            self.direction = self.direction.clone().with_unknown(state);
+            walk_augmented(self, model, thresholds, index, &mut |_, model_n| forces_n.push(model_n))
+                .map_err(|reason| self.unreadable(reason))?;
+        }
+        let [neither_n, one_n] = &forces_n;
+        self.begin_where(thresholds.standstill, &|row, _, _| [neither_n[row], one_n[row]])
+    }
+
+    fn begin_where(
+        &mut self,
+        standstill: Standstill,
+        forces_n: &dyn Fn(usize, f64, f64) -> [f64; 2],
+    ) -> Result<(), IdentifyError> {
+        let begun = self.direction.begun(&self.recording, standstill, forces_n);
+        if let Some(begun) = begun.map_err(|reason| self.unreadable(reason))? {
             self.direction = begun;
         }
         Ok(())
+    }
+
+    fn unreadable(&self, reason: std::io::Error) -> IdentifyError {
+        IdentifyError::Samples { path: self.recording.path.clone(), reason }
     }
 }
 
@@ -113,6 +153,37 @@ pub fn direct(gates: Vec<Gated>, thresholds: Thresholds, form: Form) -> Result<V
         .collect()
 }
 
+/// [`Prepared::begin`] for those of `recordings` in which nothing moves, of which every sample counts: what friction is in them nothing
+/// but the force tells.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn begin_at_rest(
+    recordings: &mut [Prepared],
+    model: &ForceModel,
+    standstill: Standstill,
+) -> Result<(), IdentifyError> {
+    let resting = recordings.iter_mut().filter(|prepared| !prepared.direction.knows());
+    resting.into_iter().try_for_each(|prepared| prepared.begin(model, standstill))
+}
+
+/// `recordings` as [`begin_at_rest`] leaves them.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn begun_at_rest<'a>(
+    recordings: &'a [Prepared],
+    model: &ForceModel,
+    standstill: Standstill,
+) -> Result<Cow<'a, [Prepared]>, IdentifyError> {
+    if recordings.iter().all(|prepared| prepared.direction.knows()) {
+        return Ok(Cow::Borrowed(recordings));
+    }
+    let mut begun = recordings.to_vec();
+    begin_at_rest(&mut begun, model, standstill)?;
+    Ok(Cow::Owned(begun))
+}
+
 /// Finds the directions of `recordings` anew under other `thresholds`.
 ///
 /// # Errors
@@ -139,4 +210,75 @@ fn directed(
     faults::spikes::rows(recording, quality)?.into_iter().for_each(|row| direction.leave_out(row..row + 1));
     faults::shaken::rows(recording, quality)?.into_iter().for_each(|rows| direction.leave_out(rows));
     Ok(direction)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use pam_muscle::effects::{Term, effect};
+    use pam_recording::Samples;
+
+    use crate::testing::{THRESHOLDS, model, recording};
+
+    const HELD: Thresholds = Thresholds { standstill: Standstill::Held, ..THRESHOLDS };
+    const LENGTH_M: [f64; 300] = [0.25; 300];
+
+    /// A muscle held at one length while its pressure rises and falls, with a force.
+    fn held(force_n: &[f64]) -> Prepared {
+        let time_s: Vec<f64> = (0..300).map(|row| 0.01 * f64::from(row)).collect();
+        let pressure_pa: Vec<f64> = time_s.iter().map(|time_s| 2e5 + 1e5 * (4.0 * time_s).sin()).collect();
+        let samples = Samples::from_columns(&time_s, &pressure_pa, &LENGTH_M, force_n);
+        direct(gate(vec![recording("held.csv", samples)]).unwrap(), HELD, Form::Corrected).unwrap().remove(0)
+    }
+
+    /// The force that `model` has there in a state of friction.
+    fn forces_n(model: &AugmentedModel, state: f64) -> Vec<f64> {
+        let mut prepared = held(&[0.0; 300]);
+        prepared.direction = prepared.direction.with_unknown(state);
+        let mut forces_n = Vec::new();
+        walk_augmented(&prepared, model, HELD, 0, &mut |_, force_n| forces_n.push(force_n)).unwrap();
+        forces_n
+    }
+
+    fn state(prepared: &Prepared) -> f64 {
+        let states: Vec<f64> = (0..300).map(|row| prepared.direction.sign(row)).collect();
+        assert!(states.iter().all(|state| *state == states[0]), "one state while nothing moves");
+        assert!((0..300).all(|row| prepared.direction.is_settled(row)), "every sample counts");
+        states[0]
+    }
+
+    #[test]
+    fn friction_of_a_muscle_that_never_moves_is_what_its_force_says() {
+        for friction in [-0.6, 0.0, 1.0] {
+            let mut still = [held(&forces_n(&AugmentedModel::from(model()), friction))];
+            assert_eq!(state(&still[0]), 0.0, "nothing is known before a model is asked");
+            begin_at_rest(&mut still, &model(), Standstill::Held).unwrap();
+            assert_eq!(state(&still[0]), friction);
+        }
+    }
+
+    #[test]
+    fn a_recording_in_which_something_moves_is_left_as_it_is() {
+        let length_m: Vec<f64> = (0..300).map(|row| 0.26 - 1e-4 * f64::from(row)).collect();
+        let time_s: Vec<f64> = (0..300).map(|row| 0.01 * f64::from(row)).collect();
+        let samples = Samples::from_columns(&time_s, &[2e5; 300], &length_m, &[300.0; 300]);
+        let gates = gate(vec![recording("ramp.csv", samples)]).unwrap();
+        let moving = direct(gates, HELD, Form::Corrected).unwrap();
+        assert!(matches!(begun_at_rest(&moving, &model(), Standstill::Held), Ok(Cow::Borrowed(_))));
+        let mut begun = moving.clone();
+        begin_at_rest(&mut begun, &model(), Standstill::Held).unwrap();
+        assert_eq!(begun[0].direction, moving[0].direction);
+    }
+
+    #[test]
+    fn what_effects_add_to_friction_at_rest_is_not_taken_for_more_of_it() {
+        let stribeck = Term::new(effect("stribeck").unwrap(), vec![5e-3, 1.0, 0.0], vec![6e-4]);
+        let augmented = AugmentedModel::new(model(), vec![stribeck]);
+        let mut still = held(&forces_n(&augmented, 0.5));
+        still.begin_with(&augmented, HELD, 0).unwrap();
+        assert_eq!(state(&still), 0.5);
+        still.begin(&model(), Standstill::Held).unwrap();
+        assert!(state(&still) > 0.5, "eq. 11 alone needs more: {}", state(&still));
+    }
 }

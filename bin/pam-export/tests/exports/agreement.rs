@@ -137,7 +137,7 @@ fn vectors_are_what_pam_predict_says() {
     let recording = pam_recording::read_recording(&desk.path().join("multisine.csv"), &options).unwrap();
     let mut prepared = pam_identification::predict::prepare_plausible(recording, &artifact).unwrap();
     let model = artifact.augmented_model();
-    prepared.begin(model.base(), artifact.direction.standstill).unwrap();
+    prepared.begin_with(&model, artifact.direction, 0).unwrap();
     let forces_n = pam_identification::predict::augmented_forces_n(&prepared, &model, artifact.direction).unwrap();
     assert_eq!(vectors, forces_n);
 }

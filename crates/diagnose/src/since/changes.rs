@@ -116,7 +116,7 @@ fn prepared(request: Request) -> Result<(Track, Then, ChangeConfig, ChangeFit), 
     let (mut later, _) = check::prepare(recordings, Vec::new(), &baseline, config.accept_implausible)?;
     let augmented = baseline.augmented_model().elsewhere();
     for prepared in &mut later {
-        prepared.begin(augmented.base(), baseline.direction.standstill)?;
+        prepared.begin_with(&augmented, baseline.direction, 0)?;
     }
     let path = later[0].recording.path.clone();
     let as_then = evaluate_augmented(&later, &augmented, baseline.direction)?;

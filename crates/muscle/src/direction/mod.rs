@@ -99,7 +99,7 @@ impl Direction {
             carried: Carried::UNKNOWN,
         });
         let all = Self::of_pieces(n_rows, recording, &pieces.collect::<Vec<_>>(), thresholds, driver, laws)?;
-        // What nothing moves from beginning to end counts without friction, or nothing would.
+        // Where nothing moves from beginning to end every sample counts, or none would.
         let counted = |(direction, _): (Self, Carried)| if direction.knows() { direction } else { direction.at_rest() };
         Ok(all.into_iter().map(counted).collect())
     }
@@ -160,15 +160,23 @@ impl Direction {
         self.known.resize(row, false);
     }
 
+    /// The same with `state` wherever nothing is known.
+    #[must_use]
+    pub fn with_unknown(mut self, state: f64) -> Self {
+        let hundredths = (STEPS * state).round() as i8;
+        self.states.iter_mut().zip(&self.known).filter(|(_, known)| !**known).for_each(|(at, _)| *at = hundredths);
+        self
+    }
+
     /// Whether anything moves.
     pub fn knows(&self) -> bool {
         self.known.contains(&true)
     }
 
-    /// The same where nothing moves in the whole recording: every sample counts, without friction.
+    /// The same where nothing moves in the whole recording: every sample counts, without friction until [`begun`](Self::begun) has
+    /// taken it from the force.
     #[must_use]
     pub fn at_rest(mut self) -> Self {
-        self.known.fill(true);
         self.settled.fill(true);
         self
     }
@@ -197,8 +205,9 @@ impl Direction {
     }
 
     /// The same with what friction was at the beginning of every segment of `recording`, of which nothing is known but the force
-    /// recorded there: among all beginnings the one under which `force_n` (of pressure, length and state) comes nearest to
-    /// it. The samples stay unsettled. None where everything is known or no force was recorded.
+    /// recorded there: among all beginnings the one under which the force comes nearest to it, where `forces_n` of row, pressure and
+    /// length are those of state 0 and state 1. Samples stay settled or unsettled as they are. None where everything is known or no force
+    /// was recorded.
     ///
     /// # Errors
     /// Where the samples cannot be read back.
@@ -206,7 +215,7 @@ impl Direction {
         &self,
         recording: &Recording,
         standstill: Standstill,
-        force_n: &dyn Fn(f64, f64, f64) -> f64,
+        forces_n: &dyn Fn(usize, f64, f64) -> [f64; 2],
     ) -> io::Result<Option<Self>> {
         if !recording.samples.has_force() || self.known.iter().all(|known| *known) {
             return Ok(None);
@@ -222,10 +231,10 @@ impl Direction {
             for_chunks(recording, &unknown, |chunk, rows| {
                 for row in rows {
                     let (pressure, length) = (chunk.pressure_pa()[row], chunk.length_m()[row]);
-                    let neither_n = force_n(pressure, length, 0.0);
+                    let [neither_n, one_n] = forces_n(chunk.first_row() + row, pressure, length);
                     pressure_pa.push(pressure);
                     without_n.push(chunk.force_n()[row] - neither_n);
-                    with_n.push(force_n(pressure, length, 1.0) - neither_n);
+                    with_n.push(one_n - neither_n);
                 }
             })?;
             let smooth_pa = moving_average(&pressure_pa, 2);
@@ -369,12 +378,14 @@ mod tests {
 
     #[test]
     fn a_segment_that_never_moves_is_unknown_beside_one_that_does_and_counts_where_none_does() {
-        let known = |travel_m: f64| {
+        let of = |travel_m: f64| {
             let length_m: Vec<f64> = (0..400).map(|row| 0.26 - travel_m * f64::from(row.min(200)) / 200.0).collect();
-            let direction = Direction::of(&recording(&length_m, 200), HELD, Driver::Motion).expect("directions");
-            [direction.is_known(190) && direction.is_settled(190), direction.is_known(300) && direction.is_settled(300)]
+            Direction::of(&recording(&length_m, 200), HELD, Driver::Motion).expect("directions")
         };
-        assert_eq!(known(0.01), [true, false]);
-        assert_eq!(known(0.0), [true, true]);
+        let counts = |direction: &Direction| [190, 300].map(|row| direction.is_settled(row));
+        let known = |direction: &Direction| [190, 300].map(|row| direction.is_known(row));
+        let (moves, rests) = (of(0.01), of(0.0));
+        assert_eq!((counts(&moves), known(&moves)), ([true, false], [true, false]));
+        assert_eq!((counts(&rests), known(&rests)), ([true, true], [false, false]), "friction is what the force says");
     }
 }
