@@ -170,3 +170,60 @@ pub fn outside(prepared: &Prepared, domain: &Domain) -> Vec<String> {
     }
     words
 }
+
+impl Prepared {
+    /// [`begin`](Self::begin) with all of an augmented `model`, in recording `index` of those that it was fitted to, or in another: where nothing moves,
+    /// every sample counts, and what effects do is not taken for friction.
+    ///
+    /// # Errors
+    /// [`IdentifyError::Samples`] where samples cannot be read back.
+    pub fn begin_with(
+        &mut self,
+        model: &AugmentedModel,
+        thresholds: Thresholds,
+        index: usize,
+    ) -> Result<(), IdentifyError> {
+        if model.is_plain() || self.direction.knows() {
+            return self.begin(model.base(), thresholds.standstill);
+        }
+        let mut forces_n = [Vec::new(), Vec::new()];
+        for (forces_n, state) in forces_n.iter_mut().zip([0.0, 1.0]) {
+            self.direction = self.direction.clone().with_unknown(state);
+            walk_augmented(self, model, thresholds, index, &mut |_, model_n| forces_n.push(model_n))
+                .map_err(|reason| self.unreadable(reason))?;
+        }
+        let [neither_n, one_n] = &forces_n;
+        self.begin_where(thresholds.standstill, &|row, _, _| [neither_n[row], one_n[row]])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use pam_muscle::direction::Standstill;
+    use pam_muscle::effects::{Term, effect};
+
+    use crate::prepare::tests::{HELD, held, state};
+    use crate::testing::model;
+
+    /// The force that `model` has there in a state of friction.
+    fn forces_n(model: &AugmentedModel, state: f64) -> Vec<f64> {
+        let mut prepared = held(&[0.0; 300]);
+        prepared.direction = prepared.direction.with_unknown(state);
+        let mut forces_n = Vec::new();
+        walk_augmented(&prepared, model, HELD, 0, &mut |_, force_n| forces_n.push(force_n)).unwrap();
+        forces_n
+    }
+
+    #[test]
+    fn what_effects_add_to_friction_at_rest_is_not_taken_for_more_of_it() {
+        let stribeck = Term::new(effect("stribeck").unwrap(), vec![5e-3, 1.0, 0.0], vec![6e-4]);
+        let augmented = AugmentedModel::new(model(), vec![stribeck]);
+        let mut still = held(&forces_n(&augmented, 0.5));
+        still.begin_with(&augmented, HELD, 0).unwrap();
+        assert_eq!(state(&still), 0.5);
+        still.begin(&model(), Standstill::Held).unwrap();
+        assert!(state(&still) > 0.5, "eq. 11 alone needs more: {}", state(&still));
+    }
+}

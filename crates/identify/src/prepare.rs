@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 use pam_muscle::Muscle;
 use pam_muscle::direction::{Direction, Driver, Standstill, Thresholds};
-use pam_muscle::effects::AugmentedModel;
 use pam_muscle::force::{ForceModel, Form};
 use pam_recording::Recording;
 use pam_recording::quality::channel::PLAY;
@@ -13,7 +12,6 @@ use rayon::prelude::*;
 
 use crate::error::IdentifyError;
 use crate::faults;
-use crate::predict::walk_augmented;
 
 /// A recording with its quality gate, before a direction is known.
 #[derive(Debug, Clone)]
@@ -48,31 +46,8 @@ impl Prepared {
         self.begin_where(standstill, &forces_n)
     }
 
-    /// The same with all of an augmented `model` in recording `index` of those that it was fitted to, or in another: where nothing moves,
-    /// every sample counts, and what effects do is not taken for friction.
-    ///
-    /// # Errors
-    /// [`IdentifyError::Samples`] where samples cannot be read back.
-    pub fn begin_with(
-        &mut self,
-        model: &AugmentedModel,
-        thresholds: Thresholds,
-        index: usize,
-    ) -> Result<(), IdentifyError> {
-        if model.is_plain() || self.direction.knows() {
-            return self.begin(model.base(), thresholds.standstill);
-        }
-        let mut forces_n = [Vec::new(), Vec::new()];
-        for (forces_n, state) in forces_n.iter_mut().zip([0.0, 1.0]) {
-            self.direction = self.direction.clone().with_unknown(state);
-            walk_augmented(self, model, thresholds, index, &mut |_, model_n| forces_n.push(model_n))
-                .map_err(|reason| self.unreadable(reason))?;
-        }
-        let [neither_n, one_n] = &forces_n;
-        self.begin_where(thresholds.standstill, &|row, _, _| [neither_n[row], one_n[row]])
-    }
-
-    fn begin_where(
+    /// The same where `forces_n` of row, pressure and length are the forces in states 0 and 1 of friction.
+    pub(crate) fn begin_where(
         &mut self,
         standstill: Standstill,
         forces_n: &dyn Fn(usize, f64, f64) -> [f64; 2],
@@ -84,7 +59,7 @@ impl Prepared {
         Ok(())
     }
 
-    fn unreadable(&self, reason: std::io::Error) -> IdentifyError {
+    pub(crate) fn unreadable(&self, reason: std::io::Error) -> IdentifyError {
         IdentifyError::Samples { path: self.recording.path.clone(), reason }
     }
 }
@@ -163,8 +138,8 @@ pub fn begin_at_rest(
     model: &ForceModel,
     standstill: Standstill,
 ) -> Result<(), IdentifyError> {
-    let resting = recordings.iter_mut().filter(|prepared| !prepared.direction.knows());
-    resting.into_iter().try_for_each(|prepared| prepared.begin(model, standstill))
+    let mut resting = recordings.iter_mut().filter(|prepared| !prepared.direction.knows());
+    resting.try_for_each(|prepared| prepared.begin(model, standstill))
 }
 
 /// `recordings` as [`begin_at_rest`] leaves them.
@@ -213,35 +188,29 @@ fn directed(
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    use pam_muscle::effects::{Term, effect};
     use pam_recording::Samples;
 
     use crate::testing::{THRESHOLDS, model, recording};
 
-    const HELD: Thresholds = Thresholds { standstill: Standstill::Held, ..THRESHOLDS };
+    pub(crate) const HELD: Thresholds = Thresholds { standstill: Standstill::Held, ..THRESHOLDS };
     const LENGTH_M: [f64; 300] = [0.25; 300];
 
+    fn pressures_pa() -> Vec<f64> {
+        (0..300).map(|row| 2e5 + 1e5 * (0.04 * f64::from(row)).sin()).collect()
+    }
+
     /// A muscle held at one length while its pressure rises and falls, with a force.
-    fn held(force_n: &[f64]) -> Prepared {
+    pub(crate) fn held(force_n: &[f64]) -> Prepared {
         let time_s: Vec<f64> = (0..300).map(|row| 0.01 * f64::from(row)).collect();
-        let pressure_pa: Vec<f64> = time_s.iter().map(|time_s| 2e5 + 1e5 * (4.0 * time_s).sin()).collect();
-        let samples = Samples::from_columns(&time_s, &pressure_pa, &LENGTH_M, force_n);
+        let samples = Samples::from_columns(&time_s, &pressures_pa(), &LENGTH_M, force_n);
         direct(gate(vec![recording("held.csv", samples)]).unwrap(), HELD, Form::Corrected).unwrap().remove(0)
     }
 
-    /// The force that `model` has there in a state of friction.
-    fn forces_n(model: &AugmentedModel, state: f64) -> Vec<f64> {
-        let mut prepared = held(&[0.0; 300]);
-        prepared.direction = prepared.direction.with_unknown(state);
-        let mut forces_n = Vec::new();
-        walk_augmented(&prepared, model, HELD, 0, &mut |_, force_n| forces_n.push(force_n)).unwrap();
-        forces_n
-    }
-
-    fn state(prepared: &Prepared) -> f64 {
+    /// The state of friction in all of `prepared`.
+    pub(crate) fn state(prepared: &Prepared) -> f64 {
         let states: Vec<f64> = (0..300).map(|row| prepared.direction.sign(row)).collect();
         assert!(states.iter().all(|state| *state == states[0]), "one state while nothing moves");
         assert!((0..300).all(|row| prepared.direction.is_settled(row)), "every sample counts");
@@ -251,7 +220,9 @@ mod tests {
     #[test]
     fn friction_of_a_muscle_that_never_moves_is_what_its_force_says() {
         for friction in [-0.6, 0.0, 1.0] {
-            let mut still = [held(&forces_n(&AugmentedModel::from(model()), friction))];
+            let forces_n: Vec<f64> =
+                pressures_pa().iter().map(|pressure_pa| model().force_n(*pressure_pa, LENGTH_M[0], friction)).collect();
+            let mut still = [held(&forces_n)];
             assert_eq!(state(&still[0]), 0.0, "nothing is known before a model is asked");
             begin_at_rest(&mut still, &model(), Standstill::Held).unwrap();
             assert_eq!(state(&still[0]), friction);
@@ -269,16 +240,5 @@ mod tests {
         let mut begun = moving.clone();
         begin_at_rest(&mut begun, &model(), Standstill::Held).unwrap();
         assert_eq!(begun[0].direction, moving[0].direction);
-    }
-
-    #[test]
-    fn what_effects_add_to_friction_at_rest_is_not_taken_for_more_of_it() {
-        let stribeck = Term::new(effect("stribeck").unwrap(), vec![5e-3, 1.0, 0.0], vec![6e-4]);
-        let augmented = AugmentedModel::new(model(), vec![stribeck]);
-        let mut still = held(&forces_n(&augmented, 0.5));
-        still.begin_with(&augmented, HELD, 0).unwrap();
-        assert_eq!(state(&still), 0.5);
-        still.begin(&model(), Standstill::Held).unwrap();
-        assert!(state(&still) > 0.5, "eq. 11 alone needs more: {}", state(&still));
     }
 }
