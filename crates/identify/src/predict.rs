@@ -183,7 +183,7 @@ impl Prepared {
         thresholds: Thresholds,
         index: usize,
     ) -> Result<(), IdentifyError> {
-        if model.is_plain() || self.direction.knows() {
+        if self.direction.knows() {
             return self.begin(model.base(), thresholds.standstill);
         }
         let mut forces_n = [Vec::new(), Vec::new()];
@@ -201,7 +201,6 @@ impl Prepared {
 mod tests {
     use super::*;
 
-    use pam_muscle::direction::Standstill;
     use pam_muscle::effects::{Term, effect};
 
     use crate::prepare::tests::{HELD, held, state};
@@ -223,7 +222,7 @@ mod tests {
         let mut still = held(&forces_n(&augmented, 0.5));
         still.begin_with(&augmented, HELD, 0).unwrap();
         assert_eq!(state(&still), 0.5);
-        still.begin(&model(), Standstill::Held).unwrap();
+        still.begin_with(&AugmentedModel::from(model()), HELD, 0).unwrap();
         assert!(state(&still) > 0.5, "eq. 11 alone needs more: {}", state(&still));
     }
 }

@@ -35,18 +35,22 @@ pub struct Prepared {
 
 impl Prepared {
     /// Takes what friction was at the beginning of every segment from the force that was recorded there, as `model` has it:
-    /// nothing else tells. Those samples stay settled or unsettled as they are.
+    /// nothing else tells. Those samples stay unsettled. Where nothing moves at all, see [`begin_at_rest`].
     ///
     /// # Errors
     /// [`IdentifyError::Samples`] where samples cannot be read back.
     pub fn begin(&mut self, model: &ForceModel, standstill: Standstill) -> Result<(), IdentifyError> {
+        if self.direction.knows() { self.begin_as(model, standstill) } else { Ok(()) }
+    }
+
+    fn begin_as(&mut self, model: &ForceModel, standstill: Standstill) -> Result<(), IdentifyError> {
         let forces_n = |_: usize, pressure_pa: f64, length_m: f64| {
             [0.0, 1.0].map(|state| model.force_n(pressure_pa, length_m, state))
         };
         self.begin_where(standstill, &forces_n)
     }
 
-    /// The same where `forces_n` of row, pressure and length are the forces in states 0 and 1 of friction.
+    /// The same wherever nothing is known, where `forces_n` of row, pressure and length are the forces in states 0 and 1 of friction.
     pub(crate) fn begin_where(
         &mut self,
         standstill: Standstill,
@@ -129,7 +133,7 @@ pub fn direct(gates: Vec<Gated>, thresholds: Thresholds, form: Form) -> Result<V
 }
 
 /// [`Prepared::begin`] for those of `recordings` in which nothing moves, of which every sample counts: what friction is in them nothing
-/// but the force tells.
+/// but the force tells. Not for a fit, which would take any fault for friction.
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
@@ -139,7 +143,7 @@ pub fn begin_at_rest(
     standstill: Standstill,
 ) -> Result<(), IdentifyError> {
     let mut resting = recordings.iter_mut().filter(|prepared| !prepared.direction.knows());
-    resting.try_for_each(|prepared| prepared.begin(model, standstill))
+    resting.try_for_each(|prepared| prepared.begin_as(model, standstill))
 }
 
 /// `recordings` as [`begin_at_rest`] leaves them.
