@@ -188,7 +188,7 @@ impl Prepared {
         }
         let mut forces_n = [Vec::new(), Vec::new()];
         for (forces_n, state) in forces_n.iter_mut().zip([0.0, 1.0]) {
-            self.direction = self.direction.clone().with_unknown(state);
+            self.direction.assume(state);
             walk_augmented(self, model, thresholds, index, &mut |_, model_n| forces_n.push(model_n))
                 .map_err(|reason| self.unreadable(reason))?;
         }
@@ -209,7 +209,7 @@ mod tests {
     /// The force that `model` has there in a state of friction.
     fn forces_n(model: &AugmentedModel, state: f64) -> Vec<f64> {
         let mut prepared = held(&[0.0; 300]);
-        prepared.direction = prepared.direction.with_unknown(state);
+        prepared.direction.assume(state);
         let mut forces_n = Vec::new();
         walk_augmented(&prepared, model, HELD, 0, &mut |_, force_n| forces_n.push(force_n)).unwrap();
         forces_n

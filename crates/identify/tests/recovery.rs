@@ -17,8 +17,9 @@ use pam_virtual_bench::{Bench, Options, Parameters, TrueMuscle, command};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-/// Runs at each of two noise levels, and with each load cell of few bits.
+/// Runs at each of two noise levels.
 const RUNS: u64 = 100;
+/// Runs with each load cell of few bits.
 const RUNS_OF_FEW_BITS: u64 = 40;
 
 /// Times the usual noise of every channel, and bits of the load cell.

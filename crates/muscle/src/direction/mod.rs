@@ -160,12 +160,10 @@ impl Direction {
         self.known.resize(row, false);
     }
 
-    /// The same with `state` wherever nothing is known.
-    #[must_use]
-    pub fn with_unknown(mut self, state: f64) -> Self {
+    /// Assumes `state` wherever nothing is known.
+    pub fn assume(&mut self, state: f64) {
         let hundredths = (STEPS * state).round() as i8;
         self.states.iter_mut().zip(&self.known).filter(|(_, known)| !**known).for_each(|(at, _)| *at = hundredths);
-        self
     }
 
     /// Whether anything moves.

@@ -45,7 +45,7 @@ pub use content::{
 pub use empirical::{PageEmpirical, PageTerm};
 pub use recording::PageRecording;
 
-use pam_artifact::diagnosis::{BeforeAfter, Residual, Verdict};
+use pam_artifact::diagnosis::{BeforeAfter, Verdict};
 
 use crate::page::html::{self, compact_figure, newtons, paragraph};
 use crate::page::{Section, document};
@@ -128,15 +128,20 @@ fn side_by_side(page: &DiagnosisPage) -> Table {
     ];
     for (name, fit, left) in fits {
         let Some(fit) = fit else { continue };
-        let counted: fn(Residual) -> f64 = |left| left.rmse_n;
-        let all: fn(Residual) -> f64 = |left| left.rmse_all_n;
         let rows = [
-            (name, "counted", counted, fit.rmse_before_n, fit.rmse_after_n, newtons(fit.noise_floor_n)),
-            ("", "all", all, fit.rmse_all_before_n, fit.rmse_all_after_n, String::new()),
+            (
+                name,
+                "counted",
+                left.map(|left| left.rmse_n),
+                fit.rmse_before_n,
+                fit.rmse_after_n,
+                newtons(fit.noise_floor_n),
+            ),
+            ("", "all", left.map(|left| left.rmse_all_n), fit.rmse_all_before_n, fit.rmse_all_after_n, String::new()),
         ];
-        for (name, samples, of, before_n, after_n, floor) in rows {
+        for (name, samples, given_n, before_n, after_n, floor) in rows {
             let mut cells = vec![name.to_owned(), samples.to_owned()];
-            cells.extend(given.map(|_| left.map_or("–".to_owned(), |left| newtons(of(left)))));
+            cells.extend(given.map(|_| given_n.map_or("–".to_owned(), newtons)));
             cells.push(newtons(before_n));
             cells.extend(after.then(|| newtons(after_n)));
             cells.push(floor);
