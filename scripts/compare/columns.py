@@ -122,10 +122,13 @@ def families(muscle, theta, recordings):
         for tau in (20, 100, 300):
             heat = lfilter([1 - np.exp(-period / tau)], [1, -np.exp(-period / tau)], work)
             add("warming", {"thermal-softening"}, tau, rubber * heat)
+            add("cooling", {"thermal-softening"}, tau, rubber * np.exp(-(time - time[0]) / tau))
         path = np.cumsum(np.abs(np.diff(travel, prepend=travel[0])))
         for power in (0.5, 1):
             add("wear", {"fatigue-wear"}, ("recording", power), gas * path**power)
             add("wear", {"fatigue-wear"}, ("ever", power), gas * (wear + path) ** power)
+            add("run-in", {"fatigue-wear"}, ("recording", power), signs * normal * path**power)
+            add("run-in", {"fatigue-wear"}, ("ever", power), signs * normal * (wear + path) ** power)
         wear += path[-1]
         start += len(time)
     names = [family for family, _ in pieces]

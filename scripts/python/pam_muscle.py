@@ -526,7 +526,7 @@ class ThermalSoftening:
     REFERENCE_W = 1e3
 
     def __init__(self, values, eq11):
-        self.values, self.warmth, self.last = values, 0.0, None
+        self.values, self.warmth, self.at_start, self.last = values, 0.0, 1.0, None
 
     def pulls(self, now, base):
         power = max(base.normal_n, 0.0) * abs(now.speed_m_per_s) / self.REFERENCE_W
@@ -535,8 +535,10 @@ class ThermalSoftening:
             heating = 0.5 * (power + last_power) if now.step_s > 0.0 else 0.0
             share = math.expm1(-max(now.time_s - last_s, 0.0) / self.values["time_constant_s"])
             self.warmth += (self.warmth - heating) * share
+            self.at_start += self.at_start * share
         self.last = (now.time_s, power)
         softer = self.warmth * self.values["softening_per_kilowatt"] + now.warmth_k * self.values["softening_per_kelvin"]
+        softer += self.at_start * self.values.get("softening_at_start", 0.0)
         return -base.latex_n * softer
 
 
@@ -554,7 +556,8 @@ class FatigueWear:
             self.travel_m += abs(followed_m - self.follower_m)
             self.follower_m = followed_m
         worn = (self.travel_m / self.REFERENCE_M) ** self.values["exponent"]
-        return -base.gas_n * worn * self.values["loss_per_reference_travel"]
+        friction_n = now.direction * base.normal_n * self.values.get("friction_loss_per_reference_travel", 0.0)
+        return (friction_n - base.gas_n * self.values["loss_per_reference_travel"]) * worn
 
 
 class StaticMap:

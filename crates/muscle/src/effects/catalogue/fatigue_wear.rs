@@ -1,8 +1,10 @@
-//! Wear: every metre of sliding costs a little of the gas force.
+//! Wear: every metre of sliding costs a little of the gas force, and changes the friction that it slides against.
 //!
 //! ```text
-//! F = F_base - d F_gas (s / s_ref)^γ,   s = ∫ |dx|
+//! F = F_base - (d F_gas - e p π D L sgn v) (s / s_ref)^γ,   s = ∫ |dx|
 //! ```
+//!
+//! Strands that run in rub less (`e > 0`), strands that fray rub more.
 
 use crate::coordinate::Coordinate;
 use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
@@ -13,6 +15,10 @@ use crate::geometry::Muscle;
 const REFERENCE_M: f64 = 100.0;
 /// Half the play in the count of travel, in m; noise at rest stays inside it.
 const HALF_PLAY_M: f64 = 1.5e-4;
+
+/// Change of the coefficient of friction over `s_ref`, at most: all of a large one, 0.03, within the first ten metres of a run-in that
+/// slows down.
+const MOST_FRICTION: f64 = 0.1;
 
 /// The effect.
 #[derive(Debug)]
@@ -28,7 +34,20 @@ impl Effect for FatigueWear {
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "loss_per_reference_travel", symbol: "d", unit: "1", range: (0.0, 1.0) }]
+        &[
+            Amplitude { name: "loss_per_reference_travel", symbol: "d", unit: "1", range: (0.0, 1.0) },
+            Amplitude {
+                name: "friction_loss_per_reference_travel",
+                symbol: "e",
+                unit: "1",
+                range: (-MOST_FRICTION, MOST_FRICTION),
+            },
+        ]
+    }
+
+    /// Before it had a loss of friction, it had none.
+    fn unless_stated(&self, index: usize) -> Option<f64> {
+        (index == 2).then_some(0.0)
     }
 
     fn outlasts(&self) -> bool {
@@ -71,7 +90,9 @@ impl Memory for State {
             self.travel_m += (followed_m - self.follower_m).abs();
             self.follower_m = followed_m;
         }
-        columns[0] = -base.gas_n * (self.travel_m / REFERENCE_M).powf(self.exponent);
+        let worn = (self.travel_m / REFERENCE_M).powf(self.exponent);
+        columns[0] = -base.gas_n * worn;
+        columns[1] = now.direction * base.normal_n * worn;
     }
 }
 
@@ -82,23 +103,32 @@ static PAGE: Page = Page {
     dependence: Dependence::Past,
     name: "fatigue and wear",
     summary: "Strands abrade, the weave opens and the ends creep, so that over hundreds of cycles the muscle pulls less \
-              at the same pressure and length. Nothing of it recovers.",
-    equation: "F = F_base - d F_gas (s / s_ref)^γ,  s = ∫ |dx|,  s_ref = 100 m",
+              at the same pressure and length. Within the first of them the strands run in: friction falls, often by a \
+              third. Nothing of it recovers.",
+    equation: "F = F_base - (d F_gas - e p π D L sgn v) (s / s_ref)^γ,  s = ∫ |dx|,  s_ref = 100 m",
     symbols: &[
         Symbol {
             symbol: "d",
             unit: "1",
             meaning: "share of the gas force lost after 100 m of travel; 0.01 to 0.05, more while a muscle is new",
         },
+        Symbol {
+            symbol: "e",
+            unit: "1",
+            meaning: "by how much the coefficient of friction falls over 100 m, below zero where it rises; up to a third of it in a \
+                      run-in",
+        },
         Symbol { symbol: "γ", unit: "1", meaning: "exponent; 1 for steady wear, 0.5 for a run-in that slows down" },
         Symbol { symbol: "x", unit: "m", meaning: "travel of the braid; counted outside a play of 0.3 mm" },
         Symbol { symbol: "F_gas", unit: "N", meaning: "force of the gas in eq. 11" },
+        Symbol { symbol: "sgn v", unit: "1", meaning: "direction of motion, kept at standstill" },
     ],
     validity: "Far from failure; the travel before the first recording counts as none.",
     source: "Klute and Hannaford (1998), \"Fatigue characteristics of McKibben artificial muscle actuators\", IROS; \
              Durante (2021) for straight-fibre muscles",
     signature: "The residual falls with the count of cycles and never returns; it is a share of the gas force, so larger \
-                at high pressure and small contraction, and nothing at all without pressure.",
+                at high pressure and small contraction, and nothing at all without pressure. Of a run-in, loops get narrower \
+                with the count of cycles, most of all in the first ones.",
     confused_with: &[
         Confusion {
             id: "force-drift",
@@ -117,11 +147,16 @@ static PAGE: Page = Page {
             test: "the difference between early and late cycles at two pressures: softening of the bladder has one size, \
                    wear follows the pressure",
         },
+        Confusion {
+            id: "stribeck",
+            because: "where the slow motion comes first, friction that falls with the travel looks like one that falls with the speed",
+            test: "the slow triangles once more at the end: run-in friction stays small",
+        },
     ],
     test: "three hundred cycles at two pressures in turn, with a vented and slack pause before and after",
     protocol: "endurance",
     coordinate: Coordinate::Time,
-    typical: Typical { shapes: &[&[0.5], &[1.0]], amplitudes: &[0.02] },
+    typical: Typical { shapes: &[&[0.5], &[1.0]], amplitudes: &[0.02, 0.005] },
     regions: &[],
     drivers: &["cycle", "time"],
 };
@@ -148,6 +183,21 @@ mod tests {
         let column_n = cycled(&mut *memory, 0.05, 2000);
         // The play takes 0.3 mm of every 50 mm.
         assert!((column_n / -base().gas_n - 0.994).abs() < 1e-3, "{column_n}");
+    }
+
+    #[test]
+    fn friction_that_runs_in_pulls_with_the_motion_and_comes_to_nothing_without_pressure() {
+        let mut memory = FatigueWear.start(&nominal(), &[1.0]);
+        let worn = cycled(&mut *memory, 0.05, 2000) / -base().gas_n;
+        for direction in [1.0, -1.0] {
+            let moment = Moment { direction, slide_m: still().slide_m, step_s: 1.0, ..still() };
+            let before_n = pull(&mut *FatigueWear.start(&nominal(), &[1.0]), &moment, &base())[1];
+            assert!(before_n.abs() < 1e-12);
+            let column_n = pull(&mut *memory, &moment, &base())[1];
+            assert!((column_n / (direction * worn * base().normal_n) - 1.0).abs() < 1e-2, "{column_n}");
+            let vented = Base { gas_n: 0.0, normal_n: 0.0, ..base() };
+            assert!(pull(&mut *memory, &moment, &vented).iter().all(|column| column.abs() < 1e-12));
+        }
     }
 
     #[test]

@@ -18,6 +18,7 @@ static inline double pam_fatigue_wear_pulls(pam_fatigue_wear *memory, const pam_
         memory->travel_m += fabs(followed_m - memory->follower_m);
         memory->follower_m = followed_m;
     }
-    return -base->gas_n * pow(memory->travel_m / reference_m, PAM_FATIGUE_WEAR_EXPONENT)
-           * PAM_FATIGUE_WEAR_LOSS_PER_REFERENCE_TRAVEL;
+    const double friction_n = now->direction * base->normal_n * PAM_FATIGUE_WEAR_FRICTION_LOSS_PER_REFERENCE_TRAVEL;
+    return (friction_n - base->gas_n * PAM_FATIGUE_WEAR_LOSS_PER_REFERENCE_TRAVEL)
+           * pow(memory->travel_m / reference_m, PAM_FATIGUE_WEAR_EXPONENT);
 }
