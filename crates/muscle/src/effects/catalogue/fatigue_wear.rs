@@ -190,7 +190,7 @@ mod tests {
         let mut memory = FatigueWear.start(&nominal(), &[1.0]);
         let worn = cycled(&mut *memory, 0.05, 2000) / -base().gas_n;
         for direction in [1.0, -1.0] {
-            let moment = Moment { direction, slide_m: still().slide_m, step_s: 1.0, ..still() };
+            let moment = Moment { direction, ..still() };
             let before_n = pull(&mut *FatigueWear.start(&nominal(), &[1.0]), &moment, &base())[1];
             assert!(before_n.abs() < 1e-12);
             let column_n = pull(&mut *memory, &moment, &base())[1];
