@@ -516,9 +516,10 @@ class MullinsSoftening:
             followed = min(max(self.follower, here - self.HALF_PLAY), here + self.HALF_PLAY)
             self.travelled += abs(followed - self.follower)
             self.follower = followed
-        below = (self.largest - here) / self.values["softening_contraction"]
+        scale = self.values["softening_contraction"]
+        softening = self.values["softening"] + math.exp(-max(here, 0.0) / scale) * self.values.get("damage", 0.0)
         settled = self.travelled / self.values["settling_travel"]
-        softer = math.expm1(-below) * self.values["softening"] + math.expm1(-settled) * self.values["settling"]
+        softer = math.expm1(-(self.largest - here) / scale) * softening + math.expm1(-settled) * self.values["settling"]
         return base.latex_n * softer
 
 
