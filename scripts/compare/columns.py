@@ -103,6 +103,7 @@ def families(muscle, theta, recordings):
             fast = np.abs(speed) / (mm_per_s * 1e-3)
             add("rate of friction", {"rate-dependent-hysteresis"}, mm_per_s, signs * normal * np.log1p(fast))
         add("friction by load", {"load-dependent-friction"}, 1, signs * np.maximum(force, 0))
+        add("friction by load", {"load-dependent-friction"}, 2, signs * np.maximum(force, 0) * contraction)
         for power in (0, 0.5, 1):
             add("viscous", {"viscous-damping"}, power, np.maximum(pressure, 0) ** power * speed)
         for tau in (0.5, 2, 5, 20, 50):

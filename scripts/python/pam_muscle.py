@@ -450,9 +450,11 @@ class RateDependentHysteresis:
 class LoadDependentFriction:
     def __init__(self, values, eq11):
         self.friction_per_load = values["friction_per_load"]
+        self.winding = values.get("friction_per_load_and_contraction", 0.0)
 
     def pulls(self, now, base):
-        return -now.direction * max(base.static_n, 0.0) * self.friction_per_load
+        per_load = self.friction_per_load + self.winding * now.contraction_ratio
+        return -now.direction * max(base.static_n, 0.0) * per_load
 
 
 class ViscousDamping:

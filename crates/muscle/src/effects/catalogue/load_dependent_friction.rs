@@ -1,8 +1,10 @@
 //! Load-dependent friction: a share of the tension itself, as over a capstan.
 //!
 //! ```text
-//! F = F_base - s μΘ max(F_static, 0)
+//! F = F_base - s (μΘ + μΘ' ε) max(F_static, 0)
 //! ```
+//!
+//! The angle of wrap changes where a cable winds onto a pulley as the muscle contracts, or off it.
 
 use crate::coordinate::Coordinate;
 use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
@@ -23,7 +25,15 @@ impl Effect for LoadDependentFriction {
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
-        &[Amplitude { name: "friction_per_load", symbol: "μΘ", unit: "1", range: (0.0, 1.0) }]
+        &[
+            Amplitude { name: "friction_per_load", symbol: "μΘ", unit: "1", range: (0.0, 1.0) },
+            Amplitude { name: "friction_per_load_and_contraction", symbol: "μΘ'", unit: "1", range: (-4.0, 4.0) },
+        ]
+    }
+
+    /// Before it could change, the angle of wrap was one.
+    fn unless_stated(&self, index: usize) -> Option<f64> {
+        (index == 1).then_some(0.0)
     }
 
     fn start(&self, _muscle: &Muscle, _shape: &[f64]) -> Box<dyn Memory> {
@@ -36,6 +46,7 @@ struct State;
 impl Memory for State {
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
         columns[0] = -now.direction * base.static_force_n.max(0.0);
+        columns[1] = columns[0] * now.contraction_ratio;
     }
 }
 
@@ -47,13 +58,20 @@ static PAGE: Page = Page {
     name: "friction that grows with the load",
     summary: "Friction that the tension itself presses on: of strands that bend around the ends, or of a cable over a \
               pulley or in a sheath. The force on the way in and on the way out have the same quotient everywhere.",
-    equation: "F = F_base - s μΘ max(F_static, 0)",
+    equation: "F = F_base - s (μΘ + μΘ' ε) max(F_static, 0)",
     symbols: &[
         Symbol {
             symbol: "μΘ",
             unit: "1",
             meaning: "coefficient of friction times angle of wrap; 0.01 to 0.06 in a muscle, up to 0.4 over a cable",
         },
+        Symbol {
+            symbol: "μΘ'",
+            unit: "1",
+            meaning: "by how much that grows with the contraction, where a cable winds onto a pulley: μ L₀ over its radius, 0.5 to 2; below \
+                      zero where it winds off, 0 for one angle",
+        },
+        Symbol { symbol: "ε", unit: "1", meaning: "contraction ratio" },
         Symbol { symbol: "s", unit: "1", meaning: "direction of motion, kept at standstill" },
         Symbol { symbol: "F_static", unit: "N", meaning: "force without friction" },
     ],
@@ -83,7 +101,7 @@ static PAGE: Page = Page {
     test: "pressure triangles under several constant loads: the width of the loop follows the load",
     protocol: "isotonic",
     coordinate: Coordinate::Force,
-    typical: Typical { shapes: &[&[]], amplitudes: &[0.03] },
+    typical: Typical { shapes: &[&[]], amplitudes: &[0.03, 0.0] },
     regions: &[],
     drivers: &["force", "pressure"],
 };
@@ -100,6 +118,14 @@ mod tests {
         let inward = pull(&mut *memory, &still(), &base())[0];
         let outward = pull(&mut *memory, &Moment { direction: -1.0, ..still() }, &base())[0];
         assert_eq!((inward, outward), (-base().static_force_n, base().static_force_n));
+    }
+
+    #[test]
+    fn a_cable_that_winds_up_rubs_more_the_more_the_muscle_has_contracted() {
+        let mut memory = LoadDependentFriction.start(&nominal(), &[]);
+        let [near, far] =
+            [0.0, 0.2].map(|contraction_ratio| pull(&mut *memory, &Moment { contraction_ratio, ..still() }, &base()));
+        assert!(near[1].abs() < f64::EPSILON && (far[1] - 0.2 * far[0]).abs() < 1e-9 && far[0] == near[0]);
     }
 
     #[test]
