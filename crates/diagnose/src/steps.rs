@@ -13,14 +13,19 @@ const NEAR_S: f64 = 1.0;
 /// What it means at most for a jump: what takes longer is a change, but none at one instant.
 const SHARP_S: f64 = 0.25;
 
+/// Share of the mean square that a step must take away where it is no jump but a slip, which takes up to [`NEAR_S`]: nothing that
+/// comes and goes with the motion is made up for by one constant from one instant on.
+const SLIPS: f64 = 0.5;
+
 /// Whether the residual itself jumps at the instant of a step of `step_n`, and by about as much: whatever drifts instead is no
-/// step.
-pub(crate) fn is_sudden(setting: &Setting<'_>, residuals_n: &[f64], shape: &[f64], step_n: f64) -> bool {
+/// step. One that takes away the share `gained` of the mean square may take longer, as a bond does that slips.
+pub(crate) fn is_sudden(setting: &Setting<'_>, residuals_n: &[f64], shape: &[f64], step_n: f64, gained: f64) -> bool {
     let Some(range) = setting.track.recordings.get(shape[0] as usize) else { return false };
-    [NEAR_S, SHARP_S].into_iter().all(|near_s| {
+    let within = |near_s: f64| {
         let jump_n = jump_n(setting, residuals_n, range.clone(), shape[1], near_s);
         jump_n.is_some_and(|jump_n| jump_n / step_n > 0.6 && jump_n / step_n < 1.7)
-    })
+    };
+    within(NEAR_S) && (gained > SLIPS || within(SHARP_S))
 }
 
 /// Median residual just after an instant less that just before it, over as many of the nearest instants that count as there are
@@ -191,7 +196,7 @@ mod tests {
         let found = shapes(&setting, &state);
         let nearest = found.iter().filter(|shape| shape[0] == 0.0).map(|shape| (shape[1] - middle_s).abs());
         assert!(nearest.fold(f64::INFINITY, f64::min) < 1.0, "{middle_s} {found:?}");
-        assert!(is_sudden(&setting, &setting.residuals_n(&state), &[0.0, middle_s], 5.0));
+        assert!(is_sudden(&setting, &setting.residuals_n(&state), &[0.0, middle_s], 5.0, 0.2));
     }
 
     #[test]
@@ -199,7 +204,19 @@ mod tests {
         let (given, middle_s) = stepped(10.0);
         let setting = given.setting();
         let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
-        assert!(!is_sudden(&setting, &setting.residuals_n(&state), &[0.0, middle_s], 5.0));
+        for gained in [0.2, 0.9] {
+            assert!(!is_sudden(&setting, &setting.residuals_n(&state), &[0.0, middle_s], 5.0, gained));
+        }
+    }
+
+    #[test]
+    fn a_force_that_slips_within_a_second_is_one_where_it_is_most_of_what_is_left() {
+        let (given, middle_s) = stepped(0.8);
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let residuals_n = setting.residuals_n(&state);
+        let is_one = |gained| is_sudden(&setting, &residuals_n, &[0.0, middle_s + 0.4], 5.0, gained);
+        assert!(!is_one(0.4) && is_one(0.6));
     }
 
     #[test]

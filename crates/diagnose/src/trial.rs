@@ -141,7 +141,8 @@ pub fn among(
             }
             let fit = sampled.fit_more(&thin, guess)?;
             let step_n = fit.amplitudes.last()?;
-            steps::is_sudden(setting, &residuals_n, &guess.shape, *step_n).then_some(fit.mean_square)
+            let gained = 1.0 - fit.mean_square / thin.fit.mean_square;
+            steps::is_sudden(setting, &residuals_n, &guess.shape, *step_n, gained).then_some(fit.mean_square)
         })
         .collect();
     // Of every beginning the best: the freer one is always nearer to what it was fitted to.
