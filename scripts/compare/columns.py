@@ -123,7 +123,6 @@ def families(muscle, theta, recordings):
         for tau in (20, 100, 300):
             heat = lfilter([1 - np.exp(-period / tau)], [1, -np.exp(-period / tau)], work)
             add("warming", {"thermal-softening"}, tau, rubber * heat)
-            add("cooling", {"thermal-softening"}, tau, rubber * np.exp(-(time - time[0]) / tau))
         path = np.cumsum(np.abs(np.diff(travel, prepend=travel[0])))
         for power in (0.5, 1):
             add("wear", {"fatigue-wear"}, ("recording", power), gas * path**power)

@@ -518,10 +518,9 @@ class MullinsSoftening:
             followed = min(max(self.follower, here - self.HALF_PLAY), here + self.HALF_PLAY)
             self.travelled += abs(followed - self.follower)
             self.follower = followed
-        scale = self.values["softening_contraction"]
-        softening = self.values["softening"] + math.exp(-max(here, 0.0) / scale) * self.values.get("damage", 0.0)
+        below = (self.largest - here) / self.values["softening_contraction"]
         settled = self.travelled / self.values["settling_travel"]
-        softer = math.expm1(-(self.largest - here) / scale) * softening + math.expm1(-settled) * self.values["settling"]
+        softer = math.expm1(-below) * self.values["softening"] + math.expm1(-settled) * self.values["settling"]
         return base.latex_n * softer
 
 
@@ -529,7 +528,7 @@ class ThermalSoftening:
     REFERENCE_W = 1e3
 
     def __init__(self, values, eq11):
-        self.values, self.warmth, self.at_start, self.last = values, 0.0, 1.0, None
+        self.values, self.warmth, self.last = values, 0.0, None
 
     def pulls(self, now, base):
         power = max(base.normal_n, 0.0) * abs(now.speed_m_per_s) / self.REFERENCE_W
@@ -538,10 +537,8 @@ class ThermalSoftening:
             heating = 0.5 * (power + last_power) if now.step_s > 0.0 else 0.0
             share = math.expm1(-max(now.time_s - last_s, 0.0) / self.values["time_constant_s"])
             self.warmth += (self.warmth - heating) * share
-            self.at_start += self.at_start * share
         self.last = (now.time_s, power)
         softer = self.warmth * self.values["softening_per_kilowatt"] + now.warmth_k * self.values["softening_per_kelvin"]
-        softer += self.at_start * self.values.get("softening_at_start", 0.0)
         return -base.latex_n * softer
 
 

@@ -1,12 +1,9 @@
 //! Mullins softening: rubber is softer below the largest stretch that it has seen.
 //!
 //! ```text
-//! F = F_base - d f [1 - exp(-(ε_m - ε) / ε_c)] - e f [1 - exp(-s / s_c)] - g f [exp(-ε / ε_c) - exp(-ε_m / ε_c)]
+//! F = F_base - d f [1 - exp(-(ε_m - ε) / ε_c)] - e f [1 - exp(-s / s_c)]
 //! ε_m = max ε so far,   s = ∫ |dε|,   f = V_r dW/dL of latex
 //! ```
-//!
-//! `d` softens by the distance from the largest contraction, `g` by that contraction itself, as damage does that is done once for all;
-//! neither softens the rubber where it is stretched for the first time. Below zero `ε` counts as zero in `g`.
 
 use crate::coordinate::Coordinate;
 use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
@@ -45,13 +42,7 @@ impl Effect for MullinsSoftening {
         &[
             Amplitude { name: "softening", symbol: "d", unit: "1", range: (0.0, 1.5) },
             Amplitude { name: "settling", symbol: "e", unit: "1", range: (0.0, 1.5) },
-            Amplitude { name: "damage", symbol: "g", unit: "1", range: (0.0, 1.5) },
         ]
-    }
-
-    /// Before it had a damage, it had none.
-    fn unless_stated(&self, index: usize) -> Option<f64> {
-        (index == 4).then_some(0.0)
     }
 
     /// Rubber that settles within its first stroke was stretched for the first time; a softening in proportion to the distance from
@@ -119,7 +110,6 @@ impl Memory for State {
         }
         columns[0] = base.latex_n() * (-below).exp_m1();
         columns[1] = base.latex_n() * (-self.travelled / self.settling_travel).exp_m1();
-        columns[2] = columns[0] * (-now.contraction_ratio.max(0.0) / self.softening_contraction).exp();
     }
 }
 
@@ -132,8 +122,8 @@ static PAGE: Page = Page {
     summary: "Rubber is softer where it has been stretched further before, and settles over its first cycles. The first \
               inflation to a new contraction meets the full resistance of the bladder, and every later cycle below it \
               meets less.",
-    equation: "F = F_base - d f (1 - exp(-(ε_m - ε) / ε_c)) - e f (1 - exp(-s / s_c)) - g f (exp(-ε / ε_c) - exp(-ε_m / ε_c)),  \
-               ε_m = largest contraction so far, s = ∫ |dε|",
+    equation: "F = F_base - d f (1 - exp(-(ε_m - ε) / ε_c)) - e f (1 - exp(-s / s_c)),  ε_m = largest contraction so far, \
+               s = ∫ |dε|",
     symbols: &[
         Symbol {
             symbol: "d",
@@ -153,7 +143,6 @@ static PAGE: Page = Page {
         },
         Symbol { symbol: "ε_m", unit: "1", meaning: "largest contraction so far" },
         Symbol { symbol: "e", unit: "1", meaning: "softening over the first cycles, in units of f; 0.02 to 0.3" },
-        Symbol { symbol: "g", unit: "1", meaning: "damage by the largest contraction, in units of f; 0.02 to 0.3" },
         Symbol {
             symbol: "s_c",
             unit: "1",
@@ -164,7 +153,7 @@ static PAGE: Page = Page {
     validity: "Rubber that is fresh or rested for a day when the first recording begins, and softened by one recording for \
                the next, or fresh in every one: whichever the recordings show. No recovery within hours.",
     source: "Mullins (1948); Ogden and Roxburgh (1999), Proc. Royal Society A 455, simplified to one exponential over the \
-             contraction; Simo (1987), Comput. Methods Appl. Mech. Eng. 60, for damage by the largest stretch; Diani, Fayolle and Gilormini (2009), European Polymer Journal 45, for the first cycles",
+             contraction; Diani, Fayolle and Gilormini (2009), European Polymer Journal 45, for the first cycles",
     signature: "The first cycle to each new contraction differs from the second at the same pressure and length, the \
                 later ones agree; the difference has the shape of the bladder's force and ignores the pressure.",
     confused_with: &[
@@ -187,7 +176,7 @@ static PAGE: Page = Page {
     test: "a staircase of largest contractions of 5, 10, 15 and 20 %, three cycles each; the staircase again; rest; again",
     protocol: "run-in",
     coordinate: Coordinate::Cycle,
-    typical: Typical { shapes: &[&[0.03, 0.5]], amplitudes: &[0.06, 0.06, 0.06] },
+    typical: Typical { shapes: &[&[0.03, 0.5]], amplitudes: &[0.06, 0.06] },
     regions: &[],
     drivers: &["contraction"],
 };
@@ -210,19 +199,6 @@ mod tests {
         assert!(back_n > 0.0 && at(-10.0) <= -base().latex_n());
         // Up again along the softened curve, and out onto the virgin one.
         assert!((at(0.07) - back_n).abs() < 1e-12 && at(0.12).abs() < 1e-12);
-    }
-
-    #[test]
-    fn damage_is_the_difference_of_what_the_largest_contraction_did_and_what_this_one_would_have_done() {
-        let mut memory = MullinsSoftening.start(&nominal(), &[0.03, 0.5]);
-        let mut at = |contraction_ratio| pull(&mut *memory, &Moment { contraction_ratio, ..still() }, &base())[2];
-        assert!(at(0.05).abs() < 1e-12 && at(0.1).abs() < 1e-12);
-        let damage = |contraction: f64| -(-contraction / 0.03_f64).exp_m1();
-        for contraction in [0.07, 0.03, 0.0] {
-            let expected_n = -base().latex_n() * (damage(0.1) - damage(contraction));
-            assert!((at(contraction) - expected_n).abs() < 1e-9, "{contraction}");
-        }
-        assert!(at(-0.02) > at(0.0), "longer than at rest it grows no more than the distance does");
     }
 
     #[test]

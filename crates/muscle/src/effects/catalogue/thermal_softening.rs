@@ -1,10 +1,8 @@
 //! Thermal softening: friction warms the bladder, and warm rubber is softer.
 //!
 //! ```text
-//! F = F_base - d f T - e f θ - w f exp(-t / τ),   τ dT/dt = P / P_ref - T,   P = p π D L |v|,   f = V_r dW/dL of latex
+//! F = F_base - d f T - e f θ,   τ dT/dt = P / P_ref - T,   P = p π D L |v|,   f = V_r dW/dL of latex
 //! ```
-//!
-//! A muscle that has just worked, or that comes from a warmer room, begins warm and cools: that is `w`.
 
 use crate::coordinate::Coordinate;
 use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
@@ -20,9 +18,6 @@ const MOST: f64 = 40.0;
 
 /// Softening per kelvin of a logged temperature, at most: 0.8 % of a bladder three times as stiff as latex.
 const MOST_PER_K: f64 = 0.025;
-
-/// Softening with which a recording begins, at most: 15 K above the surroundings.
-const MOST_AT_START: f64 = 15.0 * MOST_PER_K;
 
 /// The effect.
 #[derive(Debug)]
@@ -41,13 +36,7 @@ impl Effect for ThermalSoftening {
         &[
             Amplitude { name: "softening_per_kilowatt", symbol: "d", unit: "1", range: (-MOST, MOST) },
             Amplitude { name: "softening_per_kelvin", symbol: "e", unit: "1/K", range: (-MOST_PER_K, MOST_PER_K) },
-            Amplitude { name: "softening_at_start", symbol: "w", unit: "1", range: (-MOST_AT_START, MOST_AT_START) },
         ]
-    }
-
-    /// Before it had a softening at the start, every muscle began as cold as its surroundings.
-    fn unless_stated(&self, index: usize) -> Option<f64> {
-        (index == 3).then_some(0.0)
     }
 
     fn outlasts(&self) -> bool {
@@ -55,7 +44,7 @@ impl Effect for ThermalSoftening {
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { time_constant_s: shape[0], warmth: 0.0, at_start: 1.0, power: 0.0, last_s: None })
+        Box::new(State { time_constant_s: shape[0], warmth: 0.0, power: 0.0, last_s: None })
     }
 }
 
@@ -63,8 +52,6 @@ struct State {
     time_constant_s: f64,
     /// `T`: temperature above the surroundings, in units of what `P_ref` would end at.
     warmth: f64,
-    /// What is left of the temperature that the recording began with.
-    at_start: f64,
     /// `P / P_ref` a moment ago.
     power: f64,
     last_s: Option<f64>,
@@ -78,13 +65,11 @@ impl Memory for State {
             let heating = if now.step_s > 0.0 { 0.5 * (power + self.power) } else { 0.0 };
             let share = (-(now.time_s - last_s).max(0.0) / self.time_constant_s).exp_m1();
             self.warmth += (self.warmth - heating) * share;
-            self.at_start += self.at_start * share;
         }
         self.power = power;
         self.last_s = Some(now.time_s);
         columns[0] = -base.latex_n() * self.warmth;
         columns[1] = -base.latex_n() * now.warmth_k;
-        columns[2] = -base.latex_n() * self.at_start;
     }
 }
 
@@ -95,9 +80,8 @@ static PAGE: Page = Page {
     dependence: Dependence::Past,
     name: "thermal softening of the bladder",
     summary: "Friction and hysteresis warm a muscle that works, over minutes, and its bladder resists less. Rest cools \
-              it down again, and a muscle that comes warm to a recording cools in it. Where a temperature was logged, the bladder \
-              follows that as well.",
-    equation: "F = F_base - d f T - e f θ - w f exp(-t / τ),  τ dT/dt = P / P_ref - T,  P = p π D L |v|,  P_ref = 1 kW",
+              it down again. Where a temperature was logged, the bladder follows that as well.",
+    equation: "F = F_base - d f T - e f θ,  τ dT/dt = P / P_ref - T,  P = p π D L |v|,  P_ref = 1 kW",
     symbols: &[
         Symbol {
             symbol: "d",
@@ -124,16 +108,9 @@ static PAGE: Page = Page {
                       that stiffens; zero where none was logged",
         },
         Symbol { symbol: "θ", unit: "K", meaning: "logged temperature above 20 °C" },
-        Symbol {
-            symbol: "w",
-            unit: "1",
-            meaning: "softening with which every recording begins, in units of f, of a muscle that has worked before; 0.002 to 0.008 per \
-                      kelvin",
-        },
-        Symbol { symbol: "t", unit: "s", meaning: "time since the recording began" },
     ],
-    validity: "Surroundings of constant temperature or with a logged one, recordings that begin equally warm; some kelvin, where the \
-               rubber softens in proportion. Unfilled rubber stiffens a little instead: d, e and w have either sign.",
+    validity: "A recording that begins cold, in surroundings of constant temperature or with a logged one; some kelvin, where the rubber \
+               softens in proportion. Unfilled rubber may stiffen a little instead, which this leaves out.",
     source: "Doumit and Pardoel (2017) for the heat of working muscles; first-order balance of heat",
     signature: "Over minutes of cycling the force drifts upwards in proportion to the bladder's force, at every pressure \
                 alike, faster under faster motion, and comes back in rest.",
@@ -159,7 +136,7 @@ static PAGE: Page = Page {
            logged",
     protocol: "endurance",
     coordinate: Coordinate::Time,
-    typical: Typical { shapes: &[&[400.0]], amplitudes: &[0.1, 0.0, 0.02] },
+    typical: Typical { shapes: &[&[400.0]], amplitudes: &[0.1, 0.0] },
     regions: &[],
     drivers: &["time", "cycle"],
 };
@@ -190,16 +167,5 @@ mod tests {
         let cooled_n = pull(&mut *memory, &after, &base())[0];
         assert!((cooled_n - column_n * (-1.0_f64).exp()).abs() < 1e-9);
         assert!(cooled_n > 0.0, "a softer bladder leaves more force");
-    }
-
-    #[test]
-    fn what_begins_warm_cools_whether_it_rests_or_works() {
-        for moment in [working, |time_s| Moment { time_s, step_s: 1.0, ..still() }] {
-            let mut memory = ThermalSoftening.start(&nominal(), &[60.0]);
-            let begun_n = pull(&mut *memory, &Moment { step_s: 0.0, ..moment(0.0) }, &base())[2];
-            assert!((begun_n + base().latex_n()).abs() < 1e-12);
-            let column_n = (1..=60).map(|second| pull(&mut *memory, &moment(f64::from(second)), &base())[2]).last();
-            assert!((column_n.expect("a minute") - begun_n * (-1.0_f64).exp()).abs() < 1e-9);
-        }
     }
 }

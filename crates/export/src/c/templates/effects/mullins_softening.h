@@ -22,9 +22,8 @@ static inline double pam_mullins_softening_pulls(pam_mullins_softening *memory, 
         memory->travelled += fabs(followed - memory->follower);
         memory->follower = followed;
     }
-    const double scale = PAM_MULLINS_SOFTENING_SOFTENING_CONTRACTION;
-    const double softening = PAM_MULLINS_SOFTENING_SOFTENING + exp(-fmax(here, 0.0) / scale) * PAM_MULLINS_SOFTENING_DAMAGE;
     return pam_latex_n(base)
-           * (expm1(-(memory->largest - here) / scale) * softening
+           * (expm1(-(memory->largest - here) / PAM_MULLINS_SOFTENING_SOFTENING_CONTRACTION)
+                  * PAM_MULLINS_SOFTENING_SOFTENING
               + expm1(-memory->travelled / PAM_MULLINS_SOFTENING_SETTLING_TRAVEL) * PAM_MULLINS_SOFTENING_SETTLING);
 }

@@ -1,6 +1,6 @@
 typedef struct {
     int started;
-    double time_s, warmth, at_start, power;
+    double time_s, warmth, power;
 } pam_thermal_softening;
 
 static inline double pam_thermal_softening_pulls(pam_thermal_softening *memory, const pam_moment *now,
@@ -12,15 +12,11 @@ static inline double pam_thermal_softening_pulls(pam_thermal_softening *memory, 
         const double heating = now->step_s > 0.0 ? 0.5 * (power + memory->power) : 0.0;
         const double share = expm1(-fmax(now->time_s - memory->time_s, 0.0) / PAM_THERMAL_SOFTENING_TIME_CONSTANT_S);
         memory->warmth += (memory->warmth - heating) * share;
-        memory->at_start += memory->at_start * share;
-    } else {
-        memory->at_start = 1.0;
     }
     memory->started = 1;
     memory->time_s = now->time_s;
     memory->power = power;
     return -pam_latex_n(base)
            * (memory->warmth * PAM_THERMAL_SOFTENING_SOFTENING_PER_KILOWATT
-              + now->warmth_k * PAM_THERMAL_SOFTENING_SOFTENING_PER_KELVIN
-              + memory->at_start * PAM_THERMAL_SOFTENING_SOFTENING_AT_START);
+              + now->warmth_k * PAM_THERMAL_SOFTENING_SOFTENING_PER_KELVIN);
 }
