@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn effects_of_size_zero_change_no_lift() {
-        let zero = with_effect("load-dependent-friction", &[], &[0.0]);
+        let zero = with_effect("load-dependent-friction", &[], &[0.0, 0.0]);
         let plain = AugmentedModel::from(nominal_model());
         let expected = lift(&plain, &plain, true);
         for (model, plant) in [(&plain, &zero), (&zero, &plain), (&zero, &zero)] {
@@ -228,7 +228,7 @@ mod tests {
     fn effects_have_the_friction_of_the_plan_as_eq_11_alone_has() {
         let plan = plan();
         let (plain, zero) =
-            (AugmentedModel::from(nominal_model()), with_effect("load-dependent-friction", &[], &[0.0]));
+            (AugmentedModel::from(nominal_model()), with_effect("load-dependent-friction", &[], &[0.0, 0.0]));
         let inverse = ExactInverse::new(plain.clone(), 0.0, 5e5);
         let simulation = Simulation { plan: &plan, model: &plain, inverse: &inverse, plant: &plain };
         let worn = Deviation { friction: 1.5, friction_state: [-1.0; 2], ..Deviation::none(&plan) };

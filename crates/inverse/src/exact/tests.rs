@@ -127,7 +127,7 @@ fn a_threshold_asks_for_its_pressure_on_top() {
 
 #[test]
 fn effects_of_size_zero_change_nothing() {
-    let zero = Term::new(effect("load-dependent-friction").unwrap(), vec![], vec![0.0]);
+    let zero = Term::new(effect("load-dependent-friction").unwrap(), vec![], vec![0.0, 0.0]);
     let augmented = ExactInverse::new(AugmentedModel::new(nominal(), vec![zero]), BOX, 0.05);
     for (force_n, length_m, direction) in [(100.0, 0.22, 1.0), (300.0, 0.24, 0.2), (500.0, 0.26, -1.0)] {
         let [expected_pa, found_pa] =

@@ -122,7 +122,7 @@ fn an_effect_stands_for_a_map_where_it_gains_nearly_all_of_it_with_evidence() {
 
 #[test]
 fn friction_under_load_is_found_whatever_eq_11_misses_of_a_static_force() {
-    let rubbing: (&'static str, &[f64], &[f64]) = ("load-dependent-friction", &[], &[0.05]);
+    let rubbing: (&'static str, &[f64], &[f64]) = ("load-dependent-friction", &[], &[0.05, 0.0]);
     let found = |effects: &[(&'static str, &[f64], &[f64])], misfit_n: f64| {
         let mut desk = Desk::of(effects);
         desk.given.bend(misfit_n);
@@ -138,7 +138,7 @@ fn friction_under_load_is_found_whatever_eq_11_misses_of_a_static_force() {
 
 #[test]
 fn what_is_excluded_stands_for_no_odd_part() {
-    let mut desk = Desk::of(&[("load-dependent-friction", &[], &[0.05])]);
+    let mut desk = Desk::of(&[("load-dependent-friction", &[], &[0.05, 0.0])]);
     desk.limits.excluded.push("load-dependent-friction".to_owned());
     assert_eq!(desk.odd_of_the_map(), None);
     desk.limits.excluded.clear();
