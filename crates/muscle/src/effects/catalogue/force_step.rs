@@ -94,8 +94,8 @@ static PAGE: Page = Page {
         Symbol { symbol: "t₀", unit: "s", meaning: "instant, from the beginning of the recording" },
         Symbol { symbol: "recording", unit: "1", meaning: "which recording, counted from 0" },
     ],
-    validity: "A jump within a few samples, or a slip within a second or so that is most of what is left; a slip that changes the length by more than a fraction of a millimetre acts \
-               like another rest length instead.",
+    validity: "A jump within a few samples, or a slip within a second or so that is most of what is left; a slip that changes the \
+               length by more than a fraction of a millimetre acts like another rest length instead.",
     source: "Page (1954), Biometrika 41, for the detection of a change of the mean",
     signature: "The residual has one level before an instant and another one after it, with nothing in pressure or \
                 length to go with it.",

@@ -57,7 +57,8 @@ static PAGE: Page = Page {
     dependence: Dependence::Direction,
     name: "friction that grows with the load",
     summary: "Friction that the tension itself presses on: of strands that bend around the ends, or of a cable over a \
-              pulley or in a sheath. The force on the way in and on the way out have the same quotient everywhere.",
+              pulley or in a sheath. The force on the way in and on the way out have the same quotient at every pressure, \
+              and at every length as well where the angle of wrap does not change.",
     equation: "F = F_base - s (μΘ + μΘ' ε) max(F_static, 0)",
     symbols: &[
         Symbol {
