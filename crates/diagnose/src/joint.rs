@@ -149,7 +149,7 @@ impl Joint<'_> {
     /// Holds each fold out in turn.
     pub fn hold_out(&self, rows: &Extended<'_>, start: &[f64], fold_of_block: &[usize]) -> Option<HeldOut> {
         let folds = self.fold_fits(rows, start, fold_of_block)?;
-        let counts = rows.counts().to_vec();
+        let counts = rows.counts();
         let blocks = (0..rows.n_blocks())
             .map(|block| {
                 let fit = &folds[fold_of_block[block]];

@@ -6,15 +6,15 @@
 //! a fit of base and effects never sees them, and finds its way back to them afterwards. A triangle for a group of blocks follows from a Cholesky factorization, and
 //! candidates that only add columns are appended without touching the rows of eq. 11 again.
 
+use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::Arc;
 
-use fearless_simd::{Level, dispatch};
 use nalgebra::DMatrix;
 use pam_optim::summary::{BLOCK_ROWS, Summary};
 use rayon::prelude::*;
 
 use crate::nuisance::{self, Nuisance};
-use crate::track::Track;
 
 /// Rows in coordinates in which they are well conditioned, with their products.
 #[derive(Debug, Clone)]
@@ -29,16 +29,22 @@ pub struct Normal {
     triangle: Vec<f64>,
     /// Reference weights, `n` of them.
     reference: Vec<f64>,
-    /// `Z` and the force less the reference of the rows that count, row-major, `n + 1` values each.
-    rows: Vec<f64>,
     /// Which rows count, ascending.
     counted: Vec<usize>,
-    /// Those of each block, as a range of the counted ones.
-    of_block: Vec<Range<usize>>,
-    /// Products of the rows of each block, `(q + n + 1)²`.
-    products: Vec<DMatrix<f64>>,
-    /// Rows of each block that count.
-    counts: Vec<f64>,
+    blocks: Vec<Block>,
+}
+
+/// Rows that are fitted, or held out, together.
+#[derive(Debug, Clone)]
+struct Block {
+    /// Those of the rows that count.
+    range: Range<usize>,
+    /// Nuisances as the load cell reads them, one row in each column.
+    nuisances: Arc<DMatrix<f64>>,
+    /// `Z` and the force less the reference, `n + 1` columns.
+    rows: DMatrix<f64>,
+    /// Products: nuisances, columns, force.
+    products: DMatrix<f64>,
 }
 
 /// A [`Normal`] with more columns behind those it has, block by block; the force is last.
@@ -52,15 +58,15 @@ pub struct Extended<'a> {
     /// Prior precision of each added column, in units of its scale.
     drawn: Vec<f64>,
     /// Products of each block: nuisances, columns, added columns, force.
-    products: Vec<DMatrix<f64>>,
+    products: Vec<Cow<'a, DMatrix<f64>>>,
 }
 
 impl Normal {
-    /// Normal equations of rows of `n` columns with the forces `force_n`, at the instants that `counted` says count;
+    /// Normal equations of rows of `n` columns with the forces `force_n`, at the instants of `blocks` that `counted` says count;
     /// `slopes` is how much of the nuisances the load cell reads.
     #[expect(clippy::too_many_arguments, reason = "rows, what they are compared with, and what counts")]
     pub fn new(
-        track: &Track,
+        blocks: &[Range<usize>],
         columns: &[f64],
         n: usize,
         force_n: &[f64],
@@ -69,103 +75,75 @@ impl Normal {
         nuisance: &Nuisance,
         slopes: &[f64],
     ) -> Self {
-        let width = n + 1;
-        let residual = |at: usize| {
-            let row = &columns[at * n..(at + 1) * n];
-            force_n[at] - row.iter().zip(&reference).map(|(column, weight)| column * weight).sum::<f64>()
-        };
-        let triangles: Vec<Summary> = track
-            .blocks
-            .par_iter()
-            .map(|block| {
-                let mut summary = Summary::new(n);
-                let here: Vec<usize> = block.clone().filter(|&at| counted[at]).collect();
-                for rows in here.chunks(BLOCK_ROWS) {
-                    let mut buffer = vec![0.0; rows.len() * width];
-                    for (index, &at) in rows.iter().enumerate() {
-                        for column in 0..n {
-                            buffer[column * rows.len() + index] = columns[at * n + column];
-                        }
-                        buffer[n * rows.len() + index] = residual(at);
-                    }
-                    summary.fold(&mut buffer, rows.len());
-                }
-                summary
-            })
-            .collect();
-        let mut total = Summary::new(n);
-        for triangle in &triangles {
-            total.merge(triangle);
+        let mut ranges = Vec::with_capacity(blocks.len());
+        let mut listed: Vec<usize> = Vec::new();
+        for block in blocks {
+            let first = listed.len();
+            listed.extend(block.clone().filter(|&at| counted[at]));
+            ranges.push(first..listed.len());
         }
+        let rows_of = |range: &Range<usize>| {
+            let here = &listed[range.clone()];
+            let mut rows = DMatrix::zeros(here.len(), n + 1);
+            for (index, &at) in here.iter().enumerate() {
+                let row = &columns[at * n..(at + 1) * n];
+                row.iter().enumerate().for_each(|(column, value)| rows[(index, column)] = *value);
+                rows[(index, n)] =
+                    force_n[at] - row.iter().zip(&reference).map(|(column, weight)| column * weight).sum::<f64>();
+            }
+            let mut summary = Summary::new(n);
+            for first in (0..here.len()).step_by(BLOCK_ROWS) {
+                let some = rows.rows(first, BLOCK_ROWS.min(here.len() - first));
+                summary.fold(&mut Vec::from(some.into_owned().data), some.nrows());
+            }
+            (rows, summary)
+        };
+        let of_blocks: Vec<(DMatrix<f64>, Summary)> = ranges.par_iter().map(rows_of).collect();
+        let mut total = Summary::new(n);
+        of_blocks.iter().for_each(|(_, summary)| total.merge(summary));
         let mut triangle = vec![0.0; n * n];
         for row in 0..n {
             triangle[row * n..(row + 1) * n].copy_from_slice(&total.row(row)[..n]);
         }
-        let largest: Vec<f64> =
-            (0..n).map(|column| (0..=column).map(|row| triangle[row * n + column].abs()).fold(0.0, f64::max)).collect();
-        // A column that is a combination of those before it has no coordinate of its own.
-        let alive: Vec<bool> =
-            (0..n).map(|column| triangle[column * n + column].abs() > 1e-11 * largest[column].max(1e-300)).collect();
-        let mut of_block = Vec::with_capacity(track.blocks.len());
-        let mut listed: Vec<usize> = Vec::with_capacity(track.n());
-        for block in &track.blocks {
-            let first = listed.len();
-            listed.extend(block.clone().filter(|&at| counted[at]));
-            of_block.push(first..listed.len());
-        }
-        let mut rows = vec![0.0; listed.len() * width];
-        rows.par_chunks_exact_mut(width).zip(&listed).for_each(|(row, &at)| {
-            for column in 0..n {
-                if !alive[column] {
-                    continue;
-                }
-                let mut value = columns[at * n + column];
-                for before in 0..column {
-                    value -= row[before] * triangle[before * n + column];
-                }
-                row[column] = value / triangle[column * n + column];
-            }
-            row[n] = residual(at);
-        });
-        let q = nuisance.n();
-        let products = of_block
-            .par_iter()
-            .map(|block| {
-                let full = q + width;
-                let mut joined = vec![0.0; block.len() * full];
-                for (row, index) in joined.chunks_exact_mut(full).zip(block.clone()) {
-                    let at = listed[index];
-                    for (value, column) in row[..q].iter_mut().zip(nuisance.row(at)) {
-                        *value = slopes[at] * column;
-                    }
-                    row[q..].copy_from_slice(&rows[index * width..(index + 1) * width]);
-                }
-                products_of(&joined, full)
+        let known = nuisance.products(&listed, &ranges);
+        let is_read_in_full = listed.iter().all(|&at| slopes[at] == 1.0);
+        let blocks = of_blocks
+            .into_par_iter()
+            .zip(ranges)
+            .zip(known.par_iter())
+            .map(|(((mut rows, _), range), known)| {
+                orthonormalize(&mut rows, &triangle, n);
+                let (nuisances, own) = if is_read_in_full {
+                    (known.rows.clone(), Cow::Borrowed(&known.products))
+                } else {
+                    let mut read = DMatrix::clone(&known.rows);
+                    read.column_iter_mut().zip(&listed[range.clone()]).for_each(|(mut row, &at)| row *= slopes[at]);
+                    let products = &read * read.transpose();
+                    (Arc::new(read), Cow::Owned(products))
+                };
+                let q = nuisances.nrows();
+                let mut products = DMatrix::zeros(q + n + 1, q + n + 1);
+                products.view_mut((0, 0), (q, q)).copy_from(&own);
+                products.view_mut((0, q), (q, n + 1)).gemm(1.0, &nuisances, &rows, 0.0);
+                products.view_mut((q, q), (n + 1, n + 1)).gemm(1.0, &rows.transpose(), &rows, 0.0);
+                products.fill_lower_triangle_with_upper_triangle();
+                Block { range, nuisances, rows, products }
             })
             .collect();
-        let counts = of_block.iter().map(|block| block.len() as f64).collect();
-        Self {
-            q,
-            precision: nuisance.precision.clone(),
-            n,
-            triangle,
-            reference,
-            rows,
-            counted: listed,
-            of_block,
-            products,
-            counts,
-        }
+        Self { q: nuisance.n(), precision: nuisance.precision.clone(), n, triangle, reference, counted: listed, blocks }
     }
 
     /// Rows of each block that count.
-    pub fn counts(&self) -> &[f64] {
-        &self.counts
+    pub fn counts(&self) -> Vec<f64> {
+        self.blocks.iter().map(|block| block.range.len() as f64).collect()
     }
 
-    /// Rows that count, each with its instant: `Z` and the force less the reference, `n + 1` values.
-    pub fn rows(&self) -> impl Iterator<Item = (usize, &[f64])> {
-        self.counted.iter().copied().zip(self.rows.chunks_exact(self.n + 1))
+    /// Instants of the rows that count, of one block after the other, each with the row's `Z`, `n` values.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, impl Iterator<Item = f64>)> {
+        self.blocks.iter().flat_map(move |block| {
+            let here = self.counted[block.range.clone()].iter().enumerate();
+            here.map(move |(row, &at)| (at, (0..self.n).map(move |column| block.rows[(row, column)])))
+        })
     }
 
     /// Weights of the columns in the coordinates of `Z`, less the reference.
@@ -187,9 +165,12 @@ impl Normal {
     }
 
     /// With `more` columns (row-major, `k` per row) behind, of which the `firm` first are free and the others drawn to zero as
-    /// nuisances are; `nuisance` and `slopes` are those that it was made with.
-    pub fn extend(&self, more: &[f64], k: usize, firm: usize, nuisance: &Nuisance, slopes: &[f64]) -> Extended<'_> {
-        let (q, width) = (self.q, self.n + 1);
+    /// nuisances are.
+    pub fn extend(&self, more: &[f64], k: usize, firm: usize) -> Extended<'_> {
+        let (q, n) = (self.q, self.n);
+        if k == 0 {
+            return self.alone();
+        }
         let scales: Vec<f64> = (0..k)
             .map(|column| {
                 let squares: f64 = self.counted.iter().map(|&at| more[at * k + column].powi(2)).sum();
@@ -203,56 +184,26 @@ impl Normal {
             })
             .collect();
         let inverse: Vec<f64> = scales.iter().map(|&scale| if scale > 0.0 { 1.0 / scale } else { 0.0 }).collect();
-        let total = q + width + k;
-        let products: Vec<DMatrix<f64>> = self
-            .of_block
+        let products = self
+            .blocks
             .par_iter()
-            .zip(&self.products)
-            .map(|(block, own)| {
-                let mut out = DMatrix::zeros(total, total);
-                // Nuisances, columns, added columns, force: the force moves to the end.
-                let place = |index: usize| if index < q + self.n { index } else { total - 1 };
-                for j in 0..q + width {
-                    for i in 0..q + width {
-                        out[(place(i), place(j))] = own[(i, j)];
-                    }
-                }
-                if k == 0 {
-                    return out;
-                }
-                let full = q + width;
-                let mut cross = vec![0.0; k * full];
-                let mut squares = vec![0.0; k * k];
-                let rows = self.rows[block.start * width..block.end * width].chunks_exact(width);
-                for (row, &at) in rows.zip(&self.counted[block.clone()]) {
-                    for column in 0..k {
-                        let value = more[at * k + column] * inverse[column];
-                        if value == 0.0 {
-                            continue;
-                        }
-                        let (before, behind) = cross[column * full..(column + 1) * full].split_at_mut(q);
-                        let read = value * slopes[at];
-                        for (sum, entry) in before.iter_mut().zip(nuisance.row(at)) {
-                            *sum += read * entry;
-                        }
-                        for (sum, entry) in behind.iter_mut().zip(row) {
-                            *sum += value * entry;
-                        }
-                        for other in 0..k {
-                            squares[column * k + other] += value * more[at * k + other] * inverse[other];
-                        }
-                    }
-                }
-                for column in 0..k {
-                    for i in 0..full {
-                        out[(q + self.n + column, place(i))] = cross[column * full + i];
-                        out[(place(i), q + self.n + column)] = cross[column * full + i];
-                    }
-                    for other in 0..k {
-                        out[(q + self.n + column, q + self.n + other)] = squares[column * k + other];
-                    }
-                }
-                out
+            .map(|block| {
+                let here = &self.counted[block.range.clone()];
+                let added = DMatrix::from_fn(here.len(), k, |row, column| {
+                    if scales[column] > 0.0 { more[here[row] * k + column] * inverse[column] } else { 0.0 }
+                });
+                let last = q + n;
+                let mut out = DMatrix::zeros(last + k + 1, last + k + 1);
+                out.view_mut((0, 0), (last, last)).copy_from(&block.products.view((0, 0), (last, last)));
+                out.view_mut((0, last), (q, k)).gemm(1.0, &*block.nuisances, &added, 0.0);
+                let of_columns = block.rows.transpose() * &added;
+                out.view_mut((q, last), (n, k)).copy_from(&of_columns.rows(0, n));
+                out.view_mut((last, last), (k, k)).gemm(1.0, &added.transpose(), &added, 0.0);
+                out.view_mut((0, last + k), (last, 1)).copy_from(&block.products.view((0, last), (last, 1)));
+                out.view_mut((last, last + k), (k, 1)).copy_from(&of_columns.row(n).transpose());
+                out[(last + k, last + k)] = block.products[(last, last)];
+                out.fill_lower_triangle_with_upper_triangle();
+                Cow::Owned(out)
             })
             .collect();
         Extended { normal: self, added: k, scales, drawn, products }
@@ -260,16 +211,27 @@ impl Normal {
 
     /// With nothing behind.
     pub fn alone(&self) -> Extended<'_> {
-        self.extend(&[], 0, 0, &Nuisance::default(), &[])
+        let products = self.blocks.iter().map(|block| Cow::Borrowed(&block.products)).collect();
+        Extended { normal: self, added: 0, scales: Vec::new(), drawn: Vec::new(), products }
     }
 }
 
-/// `rowsᵀ rows`, of rows of `width` values.
-fn products_of(rows: &[f64], width: usize) -> DMatrix<f64> {
-    let mut sums = vec![0.0; width * width];
-    // The widest vectors that the processor has; nothing is fused, so that every processor gives the same bits.
-    dispatch!(Level::new(), _ => sum_products(rows, width, &mut sums));
-    mirrored(&sums, width)
+/// The first `n` columns of `rows` in the coordinates of `triangle`, `n × n` and row-major: `Z` of `X = Z T`. A column that is a
+/// combination of those before it has no coordinate of its own.
+fn orthonormalize(rows: &mut DMatrix<f64>, triangle: &[f64], n: usize) {
+    for column in 0..n {
+        let entry = |row: usize| triangle[row * n + column];
+        let largest = (0..=column).map(|row| entry(row).abs()).fold(1e-300, f64::max);
+        let (done, mut rest) = rows.columns_range_pair_mut(0..column, column);
+        if entry(column).abs() <= 1e-11 * largest {
+            rest.fill(0.0);
+            continue;
+        }
+        for (before, own) in done.column_iter().enumerate() {
+            rest.axpy(-entry(before), &own, 1.0);
+        }
+        rest /= entry(column);
+    }
 }
 
 /// The symmetric matrix whose upper triangle `sums` holds, row by row.
@@ -277,21 +239,6 @@ pub(crate) fn mirrored(sums: &[f64], width: usize) -> DMatrix<f64> {
     let mut out = DMatrix::from_row_slice(width, width, sums);
     out.fill_lower_triangle_with_upper_triangle();
     out
-}
-
-#[inline(always)]
-fn sum_products(rows: &[f64], width: usize, sums: &mut [f64]) {
-    for row in rows.chunks_exact(width) {
-        for i in 0..width {
-            let value = row[i];
-            if value == 0.0 {
-                continue;
-            }
-            for (sum, other) in sums[i * width + i..(i + 1) * width].iter_mut().zip(&row[i..]) {
-                *sum += value * other;
-            }
-        }
-    }
 }
 
 impl Extended<'_> {
@@ -306,8 +253,8 @@ impl Extended<'_> {
     }
 
     /// Rows of each block that count.
-    pub fn counts(&self) -> &[f64] {
-        &self.normal.counts
+    pub fn counts(&self) -> Vec<f64> {
+        self.normal.counts()
     }
 
     /// The triangle that stands for the blocks in which `takes` is true, with the way back to the nuisances that it is
@@ -315,11 +262,11 @@ impl Extended<'_> {
     pub fn reduced(&self, takes: &dyn Fn(usize) -> bool) -> Option<Reduced> {
         let (q, n, m) = (self.normal.q, self.normal.n, self.n_columns());
         let mut sum: DMatrix<f64> = DMatrix::zeros(q + m + 1, q + m + 1);
-        let mut count = 0.0;
+        let mut count = 0;
         for (block, product) in self.products.iter().enumerate() {
             if takes(block) {
-                sum += product;
-                count += self.normal.counts[block];
+                sum += &**product;
+                count += self.normal.blocks[block].range.len();
             }
         }
         let force_square = sum[(q + m, q + m)].max(f64::MIN_POSITIVE);

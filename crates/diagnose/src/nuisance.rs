@@ -14,16 +14,22 @@
 //! coefficient is drawn to zero as by so many instants.
 
 use std::ops::Range;
+use std::sync::Arc;
 
+use nalgebra::DMatrix;
 use pam_muscle::Coordinate;
 use pam_muscle::effects::static_map::{self, EVEN_DEGREE, ODD_DEGREE, legendre, scaled};
 use pam_muscle::effects::{Moment, Term, effect};
 use pam_muscle::force::ForceModel;
 use pam_muscle::force::rubber_friction::normal_force_n;
+use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;
 use crate::structure;
 use crate::track::Track;
+use remembered::{Products, RememberedProducts};
+
+mod remembered;
 
 /// A kind of nuisance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,11 +62,18 @@ pub struct Nuisance {
     scales: Vec<f64>,
     /// Which columns belong together.
     pub groups: Vec<(Group, Range<usize>)>,
+    products: RememberedProducts,
 }
 
 /// No nuisances at all.
-pub static NONE: Nuisance =
-    Nuisance { n: 0, rows: Vec::new(), precision: Vec::new(), scales: Vec::new(), groups: Vec::new() };
+pub static NONE: Nuisance = Nuisance {
+    n: 0,
+    rows: Vec::new(),
+    precision: Vec::new(),
+    scales: Vec::new(),
+    groups: Vec::new(),
+    products: RememberedProducts::none(),
+};
 
 /// Id of the static map in models.
 pub const MAP_ID: &str = "static-map";
@@ -96,6 +109,18 @@ impl Nuisance {
         &self.rows[at * self.n..(at + 1) * self.n]
     }
 
+    /// Rows of the instants `listed`, in blocks of which each is a range of these, and their products.
+    pub(crate) fn products(&self, listed: &[usize], blocks: &[Range<usize>]) -> Arc<Vec<Products>> {
+        self.products.of(listed, blocks, || {
+            let product = |block: &Range<usize>| {
+                let rows = listed[block.clone()].iter().flat_map(|&at| self.row(at)).copied();
+                let rows = DMatrix::from_iterator(self.n, block.len(), rows);
+                Products { products: &rows * rows.transpose(), rows: Arc::new(rows) }
+            };
+            blocks.par_iter().map(product).collect()
+        })
+    }
+
     /// What `coefficients` add at every one of `n_instants`, in N.
     pub fn force_n(&self, coefficients: &[f64], n_instants: usize) -> Vec<f64> {
         let sum = |at| self.row(at).iter().zip(coefficients).map(|(column, value)| column * value).sum();
@@ -114,7 +139,14 @@ impl Nuisance {
             rows.extend_from_slice(&self.rows[at * before..(at + 1) * before]);
             rows.extend(columns.iter().map(|column| column[at]));
         }
-        let mut out = Self { n, rows, ..self.clone() };
+        let mut out = Self {
+            n,
+            rows,
+            precision: self.precision.clone(),
+            scales: self.scales.clone(),
+            groups: self.groups.clone(),
+            products: RememberedProducts::none(),
+        };
         out.scales.extend(scales);
         out.precision.extend(std::iter::repeat_n(precision, more));
         out.groups.push((group, before..n));
@@ -235,6 +267,7 @@ impl Nuisance {
             precision: of(&self.precision),
             scales: of(&self.scales),
             groups: renumbered.collect(),
+            products: RememberedProducts::none(),
         }
     }
 

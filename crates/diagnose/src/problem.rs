@@ -84,6 +84,7 @@ impl<'a> DiagnosisProblem<'a> {
             only: None,
             nuisance,
             floor_square: self.limits.sensor_floor_n.powi(2),
+            apart: true,
             goes_on: true,
             effects: &self.effects,
         }

@@ -44,6 +44,8 @@ pub struct Setting<'a> {
     pub strand_modulus_pa: f64,
     /// Instants that fits look at; none where all that count do.
     pub only: Option<&'a [bool]>,
+    /// Whether blocks are kept apart, to be held out.
+    pub apart: bool,
     /// What is always in beside base and effects.
     pub nuisance: &'a Nuisance,
     /// What the sensors leave, in N².
@@ -158,8 +160,13 @@ impl Read {
 }
 
 impl<'a> Setting<'a> {
-    /// The same over fewer instants, to find shapes with.
+    /// The same over fewer instants, to find shapes with: no block of theirs is held out.
     pub fn sampled(&self) -> Self {
+        Self { apart: false, ..self.sampled_in_blocks() }
+    }
+
+    /// The same over fewer instants.
+    pub fn sampled_in_blocks(&self) -> Self {
         Self { only: Some(&self.track.sampled), ..*self }
     }
 
@@ -228,6 +235,8 @@ impl<'a> Setting<'a> {
             (Some(_), Some(was)) => was.clone(),
             (Some(memory), None) => Read::near_floor(&mut **memory, &force_n),
         };
+        let all = [0..self.track.n()];
+        let blocks = if self.apart { &self.track.blocks } else { &all[..] };
         let mut start = near.to_vec();
         let mut rounds_left = READ_ROUNDS;
         loop {
@@ -237,7 +246,7 @@ impl<'a> Setting<'a> {
                     linear.as_ref().map_or((&sheet.columns, &force_n), |(rows, forces)| (rows, forces));
                 let counted = self.counted();
                 let reference = reference.clone();
-                Normal::new(self.track, rows, sheet.width, measured, counted, reference, self.nuisance, &read.slopes)
+                Normal::new(blocks, rows, sheet.width, measured, counted, reference, self.nuisance, &read.slopes)
             };
             let fit = self.joint(&limits).fit_all(&normal.alone(), &start)?;
             let nuisance_n = self.nuisance.force_n(&fit.nuisances, self.track.n());
@@ -314,13 +323,13 @@ impl<'a> Setting<'a> {
         let mut limits = ranges(&state.guesses);
         limits.extend(beginnings.iter().map(|_| before(guess)));
         let rows = self.beside_rows(state, Vec::new(), &beginnings, false);
-        let rows = state.normal.extend(&rows, beginnings.len(), 0, self.nuisance, &state.read.slopes);
+        let rows = state.normal.extend(&rows, beginnings.len(), 0);
         self.joint(&limits).hold_out(&rows, &state.fit.x, &self.track.fold_of_block)
     }
 
     fn extended<'b>(&self, state: &'b State, rows: &[f64], guess: &CandidateEffect) -> Extended<'b> {
         let width = rows.len() / self.track.n();
-        state.normal.extend(rows, width, guess.amplitudes().len(), self.nuisance, &state.read.slopes)
+        state.normal.extend(rows, width, guess.amplitudes().len())
     }
 
     /// Columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes; where it is carried,

@@ -243,8 +243,8 @@ impl ProjectedResidual {
         let mut rows = vec![0.0; n * (n_directions + 1)];
         for (at, columns) in state.normal.rows() {
             let row = &mut rows[at * (n_directions + 1)..(at + 1) * (n_directions + 1)];
-            for (direction, value) in row[..n_own].iter_mut().enumerate() {
-                *value = columns[..width].iter().zip(q.column(direction).iter()).map(|(a, b)| a * b).sum();
+            for (column, factors) in columns.zip(q.row_iter()) {
+                row[..n_own].iter_mut().zip(factors.iter()).for_each(|(value, factor)| *value += column * factor);
             }
             for (value, column) in row[n_own..n_directions].iter_mut().zip(nuisance.row(at)) {
                 *value = state.read.slopes[at] * column;
@@ -258,7 +258,7 @@ impl ProjectedResidual {
             ridges,
             blocks: setting.track.blocks.clone(),
             fold_of_block: setting.track.fold_of_block.clone(),
-            counts: state.normal.counts().to_vec(),
+            counts: state.normal.counts(),
             counted,
             floor_square: setting.floor_square,
         }

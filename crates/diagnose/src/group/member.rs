@@ -155,7 +155,7 @@ impl<'a> Member<'a> {
     /// What `guess` is worth here, on the instants that a search for a shape looks at alone, or on all; none where it determines
     /// no fit.
     pub(super) fn worth(&self, guess: &CandidateEffect, thinly: bool) -> Option<Worth> {
-        let setting = if thinly { self.setting().sampled() } else { self.setting() };
+        let setting = if thinly { self.setting().sampled_in_blocks() } else { self.setting() };
         let base = self.explanations[0].seen(thinly).1;
         /// What is gained, and what is then left, a mean square in N².
         type Gain = (f64, f64);
@@ -212,7 +212,7 @@ impl<'a> Member<'a> {
 
 impl Explanation {
     fn of(setting: &Setting<'_>, judged: Judged) -> Option<Self> {
-        let sampled = setting.sampled();
+        let sampled = setting.sampled_in_blocks();
         let thin = sampled.fit_near(judged.state.guesses.clone(), &judged.state)?;
         let thin_held_out = sampled.hold_out(&thin)?;
         Some(Self { whole: judged.state, thin, held_out: judged.held_out, thin_held_out })

@@ -81,6 +81,7 @@ fn separation(
         only: None,
         nuisance: &crate::nuisance::NONE,
         floor_square: 0.0,
+        apart: true,
         goes_on: true,
         effects: setting.effects,
     };

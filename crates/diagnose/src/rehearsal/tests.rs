@@ -126,6 +126,7 @@ impl Given {
             only: None,
             nuisance: &crate::nuisance::NONE,
             floor_square: 0.0,
+            apart: true,
             goes_on: true,
             effects: pam_muscle::effects::CATALOGUE,
         }
