@@ -57,21 +57,12 @@ impl Regressors<'_> {
     pub fn sheet(&self, guesses: &[CandidateEffect], model: &ForceModel) -> DesignMatrix {
         let width = N_COLUMNS + n_amplitudes(guesses);
         let n = self.track.n();
-        let mut events = Vec::new();
-        let mut at = N_COLUMNS;
-        for guess in guesses {
-            let own = at..at + guess.amplitudes().len();
-            at = own.end;
-            if guess.effect.kind() == Kind::Event {
-                events.extend(own);
-            }
-        }
         let mut sheet = DesignMatrix {
             seen: self.track.instants.iter().map(|instant| instant.moment).collect(),
             base: vec![Base::default(); n],
             columns: vec![0.0; n * width],
             width,
-            events,
+            events: events(guesses),
         };
         let DesignMatrix { seen, base, columns, .. } = &mut sheet;
         let (mut seen, mut base, mut columns) = (&mut seen[..], &mut base[..], &mut columns[..]);
@@ -95,52 +86,41 @@ impl Regressors<'_> {
 
     fn fill(&self, part: Part<'_>, guesses: &[CandidateEffect], model: &ForceModel) {
         let Part { recording, range, seen, base, columns, width } = part;
-        let mut delays_s = [0.0; 2];
-        for guess in guesses.iter().filter(|guess| guess.effect.role() == Role::Shift) {
-            let more_s = guess.effect.delays_s(&guess.shape);
-            delays_s = [delays_s[0] + more_s[0], delays_s[1] + more_s[1]];
-        }
-        shift(seen, &self.track.instants[range.clone()], delays_s);
-        let mut memories: Vec<Box<dyn Memory>> =
-            guesses.iter().map(|guess| guess.start_in(recording, model.muscle())).collect();
-        let slopes = self.slopes || guesses.iter().any(|guess| guess.effect.uses_slopes());
-        let mut last = None;
+        shift(seen, &self.track.instants[range.clone()], delays_s(guesses));
+        let mut walk = Walk::of(self, recording, guesses, model);
         for (((now, row), here), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width)).zip(base).zip(range) {
-            let wanted = self.only.is_none_or(|only| only[at]);
-            for memory in &mut memories {
-                memory.sees(now);
-            }
-            let mut slide = now.direction;
-            for (guess, memory) in guesses.iter().zip(&mut memories) {
-                if guess.effect.role() == Role::Slides {
-                    slide = memory.slides(now);
+            *here = walk.step(now, self.wants(at), row);
+        }
+    }
+
+    /// Columns of `guesses` as [`DesignMatrix::columns`], of the instants alone that are wanted.
+    pub fn wanted_columns(&self, guesses: &[CandidateEffect], model: &ForceModel) -> Vec<f64> {
+        let width = N_COLUMNS + n_amplitudes(guesses);
+        let delays_s = delays_s(guesses);
+        let mut columns = Vec::new();
+        let mut seen = Vec::new();
+        let mut passing = vec![0.0; width];
+        for (recording, range) in self.track.recordings.iter().enumerate() {
+            let instants = &self.track.instants[range.clone()];
+            seen.clear();
+            seen.extend(instants.iter().map(|instant| instant.moment));
+            shift(&mut seen, instants, delays_s);
+            let mut walk = Walk::of(self, recording, guesses, model);
+            for (now, at) in seen.iter_mut().zip(range.clone()) {
+                if self.wants(at) {
+                    let first = columns.len();
+                    columns.resize(first + width, 0.0);
+                    walk.step(now, true, &mut columns[first..]);
+                } else {
+                    walk.step(now, false, &mut passing);
                 }
-            }
-            if wanted {
-                row[..N_COLUMNS].copy_from_slice(&self.columns.row(now.pressure_pa, now.length_m, 1.0));
-                for friction in &mut row[FRICTION..N_COLUMNS] {
-                    *friction *= slide;
-                }
-            }
-            // Between the wanted instants what the base was at the last one will do.
-            *here = match last {
-                Some(last) if !wanted => last,
-                _ if slopes => Base::of(model, now.pressure_pa, now.length_m),
-                _ => {
-                    let terms = model.terms(now.pressure_pa, now.length_m, 0.0);
-                    Base::from_terms(model, now.pressure_pa, now.length_m, &terms)
-                }
-            };
-            last = Some(*here);
-            let mut at = N_COLUMNS;
-            for (guess, memory) in guesses.iter().zip(&mut memories) {
-                let n = guess.amplitudes().len();
-                if guess.only_adds() {
-                    memory.pulls(now, here, &mut row[at..at + n]);
-                }
-                at += n;
             }
         }
+        columns
+    }
+
+    fn wants(&self, at: usize) -> bool {
+        self.only.is_none_or(|only| only[at])
     }
 
     /// Columns of one more guess that only adds, over the moments of `sheet`, row-major.
@@ -192,6 +172,95 @@ impl Regressors<'_> {
     }
 }
 
+/// Columns of `guesses` that are events.
+pub fn events(guesses: &[CandidateEffect]) -> Vec<usize> {
+    let mut events = Vec::new();
+    let mut at = N_COLUMNS;
+    for guess in guesses {
+        let own = at..at + guess.amplitudes().len();
+        at = own.end;
+        if guess.effect.kind() == Kind::Event {
+            events.extend(own);
+        }
+    }
+    events
+}
+
+/// Delays of the pressure and the length channel in all `guesses` together, in s.
+fn delays_s(guesses: &[CandidateEffect]) -> [f64; 2] {
+    let shifts = guesses.iter().filter(|guess| guess.effect.role() == Role::Shift);
+    shifts.fold([0.0; 2], |[pressure_s, length_s], guess| {
+        let more_s = guess.effect.delays_s(&guess.shape);
+        [pressure_s + more_s[0], length_s + more_s[1]]
+    })
+}
+
+/// What effects make of one recording, moment by moment.
+struct Walk<'a> {
+    columns: &'a ForceColumns,
+    model: &'a ForceModel,
+    guesses: &'a [CandidateEffect],
+    memories: Vec<Box<dyn Memory>>,
+    slopes: bool,
+    last: Option<Base>,
+}
+
+impl<'a> Walk<'a> {
+    fn of(
+        ground: &Regressors<'a>,
+        recording: usize,
+        guesses: &'a [CandidateEffect],
+        model: &'a ForceModel,
+    ) -> Self {
+        Self {
+            columns: ground.columns,
+            model,
+            guesses,
+            memories: guesses.iter().map(|guess| guess.start_in(recording, model.muscle())).collect(),
+            slopes: ground.slopes || guesses.iter().any(|guess| guess.effect.uses_slopes()),
+            last: None,
+        }
+    }
+
+    /// The base at the next moment, which becomes what the muscle sees of it; writes the columns of the effects to `row`, and where
+    /// it is `wanted` those of eq. 11. Between wanted moments what the base was at the last one will do.
+    fn step(&mut self, now: &mut Moment, wanted: bool, row: &mut [f64]) -> Base {
+        for memory in &mut self.memories {
+            memory.sees(now);
+        }
+        let mut slide = now.direction;
+        for (guess, memory) in self.guesses.iter().zip(&mut self.memories) {
+            if guess.effect.role() == Role::Slides {
+                slide = memory.slides(now);
+            }
+        }
+        if wanted {
+            row[..N_COLUMNS].copy_from_slice(&self.columns.row(now.pressure_pa, now.length_m, 1.0));
+            for friction in &mut row[FRICTION..N_COLUMNS] {
+                *friction *= slide;
+            }
+        }
+        let here = match self.last {
+            Some(last) if !wanted => last,
+            _ if self.slopes => Base::of(self.model, now.pressure_pa, now.length_m),
+            _ => {
+                let terms = self.model.terms(now.pressure_pa, now.length_m, 0.0);
+                Base::from_terms(self.model, now.pressure_pa, now.length_m, &terms)
+            }
+        };
+        self.last = Some(here);
+        let mut at = N_COLUMNS;
+        for (guess, memory) in self.guesses.iter().zip(&mut self.memories) {
+            let n = guess.amplitudes().len();
+            if guess.only_adds() {
+                memory.pulls(now, &here, &mut row[at..at + n]);
+            }
+            at += n;
+        }
+        here
+    }
+}
+
 /// Rows of one recording.
 struct Part<'a> {
     recording: usize,
@@ -209,7 +278,26 @@ fn split_off<'a, T>(slice: &mut &'a mut [T], n: usize) -> &'a mut [T] {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::rehearsal::tests::Given;
+
+    #[test]
+    fn wanted_columns_are_those_of_the_whole_matrix() {
+        let given = Given::of(&["isobaric-triangles", "multisine"], &[]);
+        let guesses = [
+            given.guess("channel-delay", &[0.05, 0.0]),
+            given.guess("pressure-lag", &[0.2, 0.0]),
+            given.guess("rubber-hysteresis", &[2e-3]),
+        ];
+        let setting = given.setting().sampled();
+        let ground = setting.ground();
+        let sheet = ground.sheet(&guesses, &given.model);
+        let wanted = (0..given.track.n()).filter(|&at| given.track.sampled[at]);
+        let expected: Vec<f64> =
+            wanted.flat_map(|at| sheet.columns[at * sheet.width..(at + 1) * sheet.width].to_vec()).collect();
+        assert!(expected.len() > 100 * sheet.width);
+        assert_eq!(ground.wanted_columns(&guesses, &given.model), expected);
+    }
 
     #[test]
     fn a_muscle_that_has_worked_begins_warm_and_cools() {

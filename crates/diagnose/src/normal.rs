@@ -62,38 +62,29 @@ pub struct Extended<'a> {
 }
 
 impl Normal {
-    /// Normal equations of rows of `n` columns with the forces `force_n`, at the instants of `blocks` that `counted` says count;
-    /// `slopes` is how much of the nuisances the load cell reads.
-    #[expect(clippy::too_many_arguments, reason = "rows, what they are compared with, and what counts")]
+    /// Normal equations of the instants `listed`, in blocks of which each is a range of these: `columns` in rows (row-major) and the
+    /// force of each, in N. `slopes` is how much of the nuisances the load cell reads at every instant of the recordings.
     pub fn new(
-        blocks: &[Range<usize>],
+        listed: Vec<usize>,
+        ranges: Vec<Range<usize>>,
         columns: &[f64],
-        n: usize,
-        force_n: &[f64],
-        counted: &[bool],
+        forces_n: &[f64],
         reference: Vec<f64>,
         nuisance: &Nuisance,
         slopes: &[f64],
     ) -> Self {
-        let mut ranges = Vec::with_capacity(blocks.len());
-        let mut listed: Vec<usize> = Vec::new();
-        for block in blocks {
-            let first = listed.len();
-            listed.extend(block.clone().filter(|&at| counted[at]));
-            ranges.push(first..listed.len());
-        }
+        let n = reference.len();
         let rows_of = |range: &Range<usize>| {
-            let here = &listed[range.clone()];
-            let mut rows = DMatrix::zeros(here.len(), n + 1);
-            for (index, &at) in here.iter().enumerate() {
-                let row = &columns[at * n..(at + 1) * n];
+            let here = &columns[range.start * n..range.end * n];
+            let mut rows = DMatrix::zeros(range.len(), n + 1);
+            for (index, (row, force_n)) in here.chunks_exact(n).zip(&forces_n[range.clone()]).enumerate() {
                 row.iter().enumerate().for_each(|(column, value)| rows[(index, column)] = *value);
                 rows[(index, n)] =
-                    force_n[at] - row.iter().zip(&reference).map(|(column, weight)| column * weight).sum::<f64>();
+                    force_n - row.iter().zip(&reference).map(|(column, weight)| column * weight).sum::<f64>();
             }
             let mut summary = Summary::new(n);
-            for first in (0..here.len()).step_by(BLOCK_ROWS) {
-                let some = rows.rows(first, BLOCK_ROWS.min(here.len() - first));
+            for first in (0..range.len()).step_by(BLOCK_ROWS) {
+                let some = rows.rows(first, BLOCK_ROWS.min(range.len() - first));
                 summary.fold(&mut Vec::from(some.into_owned().data), some.nrows());
             }
             (rows, summary)

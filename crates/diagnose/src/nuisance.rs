@@ -14,7 +14,7 @@
 //! coefficient is drawn to zero as by so many instants.
 
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use nalgebra::DMatrix;
 use pam_muscle::Coordinate;
@@ -55,25 +55,19 @@ pub enum Group {
 pub struct Nuisance {
     n: usize,
     /// Row-major, `n` per instant.
-    rows: Vec<f64>,
+    rows: Arc<Vec<f64>>,
     /// Prior precision of each column.
     pub precision: Vec<f64>,
     /// What each column was multiplied by.
     scales: Vec<f64>,
     /// Which columns belong together.
     pub groups: Vec<(Group, Range<usize>)>,
-    products: RememberedProducts,
+    /// Products of `rows`.
+    products: Arc<RememberedProducts>,
 }
 
 /// No nuisances at all.
-pub static NONE: Nuisance = Nuisance {
-    n: 0,
-    rows: Vec::new(),
-    precision: Vec::new(),
-    scales: Vec::new(),
-    groups: Vec::new(),
-    products: RememberedProducts::none(),
-};
+pub static NONE: LazyLock<Nuisance> = LazyLock::new(Nuisance::default);
 
 /// Id of the static map in models.
 pub const MAP_ID: &str = "static-map";
@@ -141,11 +135,11 @@ impl Nuisance {
         }
         let mut out = Self {
             n,
-            rows,
+            rows: Arc::new(rows),
             precision: self.precision.clone(),
             scales: self.scales.clone(),
             groups: self.groups.clone(),
-            products: RememberedProducts::none(),
+            products: Arc::default(),
         };
         out.scales.extend(scales);
         out.precision.extend(std::iter::repeat_n(precision, more));
@@ -259,15 +253,16 @@ impl Nuisance {
         });
         Self {
             n: columns.len(),
-            rows: self
-                .rows
-                .chunks_exact(self.n.max(1))
-                .flat_map(|row| columns.iter().map(|&column| row[column]))
-                .collect(),
+            rows: Arc::new(
+                self.rows
+                    .chunks_exact(self.n.max(1))
+                    .flat_map(|row| columns.iter().map(|&column| row[column]))
+                    .collect(),
+            ),
             precision: of(&self.precision),
             scales: of(&self.scales),
             groups: renumbered.collect(),
-            products: RememberedProducts::none(),
+            products: Arc::default(),
         }
     }
 

@@ -85,7 +85,6 @@ impl<'a> DiagnosisProblem<'a> {
             nuisance,
             floor_square: self.limits.sensor_floor_n.powi(2),
             apart: true,
-            goes_on: true,
             effects: &self.effects,
         }
     }

@@ -1,13 +1,15 @@
 //! A hypothesis fitted to the track.
 
+use std::ops::Range;
+
 use pam_identification::search_space::SearchSpace;
 use pam_muscle::Muscle;
 use pam_muscle::effects::{Effect, Kind, Memory, Role, Term};
 use pam_muscle::force::ForceModel;
-use pam_muscle::force::columns::ForceColumns;
+use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
 
-use crate::design_matrix::{DesignMatrix, Regressors};
-use crate::hypothesis::{CandidateEffect, ranges};
+use crate::design_matrix::{DesignMatrix, Regressors, events};
+use crate::hypothesis::{CandidateEffect, n_amplitudes, ranges};
 use crate::joint::{HeldOut, Joint, JointFit};
 use crate::normal::{Extended, Normal};
 use crate::nuisance::Nuisance;
@@ -50,8 +52,6 @@ pub struct Setting<'a> {
     pub nuisance: &'a Nuisance,
     /// What the sensors leave, in N².
     pub floor_square: f64,
-    /// Whether further effects are tried on top of its fits.
-    pub goes_on: bool,
     /// Effects that may be named: those of the catalogue, and a user's own.
     pub effects: &'a [&'static dyn Effect],
 }
@@ -120,19 +120,11 @@ impl Read {
         }
     }
 
-    /// Linear around the forces that `weights` make of `sheet`, at the instants that count; the number of those whose slope
-    /// changes by more than a little.
-    fn move_to(
-        &mut self,
-        memory: &mut dyn Memory,
-        sheet: &DesignMatrix,
-        weights: &[f64],
-        nuisance_n: &[f64],
-        counted: &[bool],
-    ) -> usize {
+    /// Linear around `forces_n`, those that a fit gives the instants `listed`; the number of those whose slope changes by more
+    /// than a little.
+    fn move_to(&mut self, memory: &mut dyn Memory, listed: &[usize], forces_n: impl Iterator<Item = f64>) -> usize {
         let mut moved = 0;
-        for at in (0..counted.len()).filter(|&at| counted[at]) {
-            let force_n = sheet.force_n(at, weights) - sheet.events_n(at, weights) + nuisance_n[at];
+        for (&at, force_n) in listed.iter().zip(forces_n) {
             let slope = memory.slope(force_n);
             // What hardly shows is nothing: rows next to zero are none that a decomposition can be made of.
             let slope = if slope > LEAST_SLOPE { slope } else { 0.0 };
@@ -143,20 +135,37 @@ impl Read {
         moved
     }
 
-    /// Columns and forces of which the cell reads that much.
-    fn linear(&self, sheet: &DesignMatrix, force_n: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let measured = force_n.iter().zip(&self.offsets_n).map(|(force_n, offset_n)| force_n - offset_n).collect();
-        (self.scaled(sheet.columns.clone(), sheet.width, &sheet.events), measured)
-    }
-
-    /// As much of `rows`, `width` columns each, as the cell reads; all of the columns `unread`, which come on top of what it reads.
-    fn scaled(&self, mut rows: Vec<f64>, width: usize, unread: &[usize]) -> Vec<f64> {
-        for (row, slope) in rows.chunks_exact_mut(width.max(1)).zip(&self.slopes).filter(|(_, slope)| **slope != 1.0) {
-            let read = row.iter_mut().enumerate().filter(|(index, _)| !unread.contains(index));
-            read.for_each(|(_, column)| *column *= slope);
+    /// As much of `rows`, `width` columns for each of the instants `listed`, as the cell reads; all of the columns `unread`, which
+    /// come on top of what it reads.
+    fn scaled(
+        &self,
+        mut rows: Vec<f64>,
+        width: usize,
+        listed: impl IntoIterator<Item = usize>,
+        unread: &[usize],
+    ) -> Vec<f64> {
+        for (row, at) in rows.chunks_exact_mut(width.max(1)).zip(listed) {
+            let slope = self.slopes[at];
+            if slope != 1.0 {
+                let read = row.iter_mut().enumerate().filter(|(index, _)| !unread.contains(index));
+                read.for_each(|(_, column)| *column *= slope);
+            }
         }
         rows
     }
+}
+
+/// Rows that a fit looks at.
+struct Rows {
+    /// Their instants.
+    listed: Vec<usize>,
+    /// Those of each block.
+    blocks: Vec<Range<usize>>,
+    /// Columns of eq. 11 and of the effects, row-major.
+    columns: Vec<f64>,
+    width: usize,
+    /// Columns of events, which come on top of what the cell reads.
+    events: Vec<usize>,
 }
 
 impl<'a> Setting<'a> {
@@ -170,11 +179,6 @@ impl<'a> Setting<'a> {
         Self { only: Some(&self.track.sampled), ..*self }
     }
 
-    /// The same for fits of which only what they leave is wanted.
-    pub fn ending(&self) -> Self {
-        Self { goes_on: false, ..*self }
-    }
-
     /// The same beside other nuisances.
     pub fn beside<'b>(&'b self, nuisance: &'b Nuisance) -> Setting<'b> {
         Setting { nuisance, ..*self }
@@ -186,7 +190,7 @@ impl<'a> Setting<'a> {
     }
 
     pub(crate) fn ground(&self) -> Regressors<'_> {
-        Regressors { track: self.track, columns: self.columns, only: self.only, slopes: self.goes_on }
+        Regressors { track: self.track, columns: self.columns, only: self.only, slopes: true }
     }
 
     fn joint<'b>(&'b self, ranges: &'b [(f64, f64)]) -> Joint<'b> {
@@ -224,48 +228,106 @@ impl<'a> Setting<'a> {
         was: Option<&Read>,
     ) -> Option<State> {
         let sheet = self.ground().sheet(&guesses, model);
-        let limits = ranges(&guesses);
-        let force_n: Vec<f64> = self.track.instants.iter().map(|instant| instant.force_n).collect();
-        let reads = guesses.iter().find(|guess| guess.effect.role() == Role::Reads);
-        let mut reads = reads.map(|guess| guess.effect.start(self.muscle, &guess.shape));
-        let mut reference = self.columns.weights(model.parameters()).to_vec();
-        reference.resize(sheet.width, 0.0);
-        let mut read = match (&mut reads, was) {
-            (None, _) => Read::plain(self.track.n()),
-            (Some(_), Some(was)) => was.clone(),
-            (Some(memory), None) => Read::near_floor(&mut **memory, &force_n),
-        };
+        let (listed, blocks) = self.listed();
+        let width = sheet.width;
+        let of_listed = listed.iter().flat_map(|&at| &sheet.columns[at * width..(at + 1) * width]);
+        let rows = Rows { columns: of_listed.copied().collect(), listed, blocks, width, events: sheet.events.clone() };
+        let (normal, fit, read) = self.settled(&guesses, rows, near, model, was)?;
+        let model = self.model(&fit);
+        let nuisance_n = self.nuisance.force_n(&fit.nuisances, self.track.n());
+        Some(State { guesses, sheet, normal, fit, model, read, nuisance_n })
+    }
+
+    /// Mean square of the fit of `guesses` and the base, starting from `state`.
+    pub fn left_near(&self, guesses: &[CandidateEffect], state: &State) -> Option<f64> {
+        let ground = Regressors { slopes: false, ..self.ground() };
+        let columns = ground.wanted_columns(guesses, &state.model);
+        let (listed, blocks) = self.listed();
+        let width = N_COLUMNS + n_amplitudes(guesses);
+        let rows = Rows { listed, blocks, columns, width, events: events(guesses) };
+        let near = &state.fit.x[..self.space.free.len()];
+        let was = state.hangs_slack().then_some(&state.read);
+        Some(self.settled(guesses, rows, near, &state.model, was)?.1.mean_square)
+    }
+
+    /// Instants that count, and those of each block that is kept apart.
+    fn listed(&self) -> (Vec<usize>, Vec<Range<usize>>) {
+        let counted = self.counted();
         let all = [0..self.track.n()];
+        let mut listed: Vec<usize> = Vec::new();
         let blocks = if self.apart { &self.track.blocks } else { &all[..] };
+        let ranges = blocks.iter().map(|block| {
+            let first = listed.len();
+            listed.extend(block.clone().filter(|&at| counted[at]));
+            first..listed.len()
+        });
+        let ranges = ranges.collect();
+        (listed, ranges)
+    }
+
+    /// The fit of `rows`, with its normal equations and what the load cell reads: that has to settle where the muscle may hang slack.
+    fn settled(
+        &self,
+        guesses: &[CandidateEffect],
+        rows: Rows,
+        near: &[f64],
+        model: &ForceModel,
+        was: Option<&Read>,
+    ) -> Option<(Normal, JointFit, Read)> {
+        let Rows { listed, blocks, columns, width, events } = rows;
+        let limits = ranges(guesses);
+        let measured_n = |at: usize| self.track.instants[at].force_n;
+        let reads = guesses.iter().find(|guess| guess.effect.role() == Role::Reads);
+        let Some(mut memory) = reads.map(|guess| guess.effect.start(self.muscle, &guess.shape)) else {
+            let read = Read::plain(self.track.n());
+            let forces_n: Vec<f64> = listed.iter().map(|&at| measured_n(at)).collect();
+            let reference = self.reference(model, width);
+            let normal = Normal::new(listed, blocks, &columns, &forces_n, reference, self.nuisance, &read.slopes);
+            let fit = self.joint(&limits).fit_all(&normal.alone(), near)?;
+            return Some((normal, fit, read));
+        };
+        let mut read = match was {
+            Some(was) => was.clone(),
+            None => {
+                let forces_n: Vec<f64> = self.track.instants.iter().map(|instant| instant.force_n).collect();
+                Read::near_floor(&mut *memory, &forces_n)
+            }
+        };
+        let mut reference = self.reference(model, width);
         let mut start = near.to_vec();
         let mut rounds_left = READ_ROUNDS;
         loop {
-            let normal = {
-                let linear = reads.is_some().then(|| read.linear(&sheet, &force_n));
-                let (rows, measured) =
-                    linear.as_ref().map_or((&sheet.columns, &force_n), |(rows, forces)| (rows, forces));
-                let counted = self.counted();
-                let reference = reference.clone();
-                Normal::new(blocks, rows, sheet.width, measured, counted, reference, self.nuisance, &read.slopes)
-            };
+            let seen = read.scaled(columns.clone(), width, listed.iter().copied(), &events);
+            let forces_n: Vec<f64> = listed.iter().map(|&at| measured_n(at) - read.offsets_n[at]).collect();
+            let (own, blocks) = (listed.clone(), blocks.clone());
+            let normal =
+                Normal::new(own, blocks, &seen, &forces_n, reference.clone(), self.nuisance, &read.slopes);
             let fit = self.joint(&limits).fit_all(&normal.alone(), &start)?;
-            let nuisance_n = self.nuisance.force_n(&fit.nuisances, self.track.n());
             // The last readings have not settled: this fit is under them.
-            let settled = match &mut reads {
-                Some(memory) if rounds_left > 0 => {
-                    let counted = self.counted();
-                    read.move_to(&mut **memory, &sheet, &fit.weights, &nuisance_n, counted) * 2000 <= self.track.n()
-                }
-                _ => true,
-            };
-            if settled {
-                let model = self.model(&fit);
-                return Some(State { guesses, sheet, normal, fit, model, read, nuisance_n });
+            if rounds_left == 0 {
+                return Some((normal, fit, read));
+            }
+            let forces_n = columns.chunks_exact(width).zip(&listed).map(|(row, &at)| {
+                let is_event = |column: &usize| events.contains(column);
+                let pulls = row.iter().zip(&fit.weights).enumerate().filter(|(column, _)| !is_event(column));
+                let nuisances = self.nuisance.row(at).iter().zip(&fit.nuisances);
+                let force_n: f64 = pulls.map(|(_, (column, weight))| column * weight).sum();
+                force_n + nuisances.map(|(column, value)| column * value).sum::<f64>()
+            });
+            if read.move_to(&mut *memory, &listed, forces_n) * 2000 <= self.track.n() {
+                return Some((normal, fit, read));
             }
             start.clone_from(&fit.x);
             reference.clone_from(&fit.weights);
             rounds_left -= 1;
         }
+    }
+
+    /// Weights that residuals are taken from before a fit: those of `model`, effects at zero.
+    fn reference(&self, model: &ForceModel, width: usize) -> Vec<f64> {
+        let mut reference = self.columns.weights(model.parameters()).to_vec();
+        reference.resize(width, 0.0);
+        reference
     }
 
     /// Fits of `state` that each leave one fold out.
@@ -348,13 +410,13 @@ impl<'a> Setting<'a> {
         let n = self.track.n();
         let width = rows.len() / n;
         if columns.is_empty() {
-            return state.read.scaled(rows, width, if is_event { &[0] } else { &[] });
+            return state.read.scaled(rows, width, 0..n, if is_event { &[0] } else { &[] });
         }
         let joined = (0..n).flat_map(|at| {
             let own = rows[at * width..(at + 1) * width].iter().copied();
             own.chain(columns.iter().map(move |column| column[at]))
         });
-        state.read.scaled(joined.collect(), width + columns.len(), &[])
+        state.read.scaled(joined.collect(), width + columns.len(), 0..n, &[])
     }
 
     /// What `guess` leaves in every recording of what went before it: a column for each recording and amplitude, in which

@@ -235,15 +235,17 @@ pub fn mean_square(setting: &Setting<'_>, state: &State, guess: &CandidateEffect
     if guess.only_adds() {
         setting.fit_more(state, guess).map(|fit| fit.mean_square)
     } else {
-        Some(with(&setting.ending(), state, guess)?.fit.mean_square)
+        setting.left_near(&joined(state, guess), state)
     }
 }
 
 /// `state` with one more guess.
 pub fn with(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> Option<State> {
-    let mut guesses = state.guesses.clone();
-    guesses.push(guess.clone());
-    setting.fit_near(guesses, state)
+    setting.fit_near(joined(state, guess), state)
+}
+
+fn joined(state: &State, guess: &CandidateEffect) -> Vec<CandidateEffect> {
+    state.guesses.iter().chain([guess]).cloned().collect()
 }
 
 /// Better values of the shape parameters of `guess` on top of `state`, one after the other, `sweeps` times; and the mean
@@ -270,6 +272,10 @@ pub fn refine(
                     let mut trial = best.1.clone();
                     trial.shape[index] =
                         (best.1.shape[index] + way * factor).clamp(parameter.range.0, parameter.range.1);
+                    // At an end of the range there is nothing on the other side.
+                    if trial.shape[index] == best.1.shape[index] {
+                        return None;
+                    }
                     mean_square(setting, state, &trial).map(|cost| (cost, trial))
                 };
                 let (below, above) = rayon::join(|| tried(-1.0), || tried(1.0));

@@ -82,7 +82,6 @@ fn separation(
         nuisance: &crate::nuisance::NONE,
         floor_square: 0.0,
         apart: true,
-        goes_on: true,
         effects: setting.effects,
     };
     let runs: Vec<Run> = explanations

@@ -31,10 +31,6 @@ struct Known {
 }
 
 impl RememberedProducts {
-    pub(super) const fn none() -> Self {
-        Self { known: Mutex::new(Vec::new()) }
-    }
-
     /// Products over the instants `listed`, of which each of `blocks` is a range: known ones, or what `make` makes.
     pub(super) fn of(
         &self,
@@ -57,20 +53,13 @@ impl RememberedProducts {
     }
 }
 
-/// A copy may become other columns: it knows nothing yet.
-impl Clone for RememberedProducts {
-    fn clone(&self) -> Self {
-        Self::none()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn products_are_made_once_for_every_set_of_instants() {
-        let remembered = RememberedProducts::none();
+        let remembered = RememberedProducts::default();
         let made = std::cell::Cell::new(0);
         let ask = |listed: &[usize]| {
             let block = 0..listed.len();

@@ -127,7 +127,6 @@ impl Given {
             nuisance: &crate::nuisance::NONE,
             floor_square: 0.0,
             apart: true,
-            goes_on: true,
             effects: pam_muscle::effects::CATALOGUE,
         }
     }
