@@ -21,13 +21,19 @@ const RIDGE: f64 = 10.0;
 pub(super) struct Field<'a> {
     setting: &'a Setting<'a>,
     state: &'a State,
-    remainder: ProjectedResidual,
+    /// Ridge of each direction of the tangent space.
+    ridges: Vec<f64>,
     /// Factor of each scale at every instant, in the order of [`Scale::ALL`], as much of it as the load cell reads.
     factors: Vec<Vec<f64>>,
     /// Instants that are looked at, of each block.
     looked_at: Vec<Vec<usize>>,
-    /// Products of the tangent space and the residual, of each block.
+    /// Tangent space and residual of each block, one instant in each column.
+    rows: Vec<DMatrix<f64>>,
+    /// Their products.
     products: Vec<DMatrix<f64>>,
+    /// The tangent space over all blocks but those of each fold, and over all.
+    folds: Vec<Tangent>,
+    all: Tangent,
     counts: Vec<f64>,
     /// Ridge of a curve's values.
     ridge: f64,
@@ -35,11 +41,20 @@ pub(super) struct Field<'a> {
     pub(super) nothing: HeldOut,
 }
 
-/// Products of one sentence with the tangent space and the residual, block by block.
+/// Products of one sentence with the tangent space and the residual, and with itself, block by block.
 pub(super) struct Products {
-    blocks: Vec<DMatrix<f64>>,
+    cross: Vec<DMatrix<f64>>,
+    own: Vec<DMatrix<f64>>,
     /// Size of the curve's columns is one newton, root mean square, over what is looked at: what they were divided by.
     size: f64,
+}
+
+/// The tangent space over some blocks, factorized: what a sentence adds is solved on top of it.
+pub(super) struct Tangent {
+    /// Lower triangle.
+    factor: DMatrix<f64>,
+    /// The residual in its coordinates.
+    residual: DVector<f64>,
 }
 
 impl<'a> Field<'a> {
@@ -59,33 +74,37 @@ impl<'a> Field<'a> {
         let looked_at: Vec<Vec<usize>> = track.blocks.iter().map(block).collect();
         let counts: Vec<f64> = looked_at.iter().map(|rows| rows.len() as f64).collect();
         let width = remainder.n_directions + 1;
-        let products = looked_at
+        let rows: Vec<DMatrix<f64>> = looked_at
             .iter()
-            .map(|rows| {
-                let mut sums = DMatrix::zeros(width, width);
-                for &at in rows {
-                    let row = DVector::from_column_slice(&remainder.rows[at * width..(at + 1) * width]);
-                    sums.syger(1.0, &row, &row, 1.0);
-                }
-                sums.fill_upper_triangle_with_lower_triangle();
-                sums
+            .map(|instants| {
+                let of = |at: &usize| &remainder.rows[at * width..(at + 1) * width];
+                DMatrix::from_iterator(width, instants.len(), instants.iter().flat_map(of).copied())
             })
             .collect();
+        let products: Vec<DMatrix<f64>> = rows.iter().map(|rows| rows * rows.transpose()).collect();
+        let fold_of = &track.fold_of_block;
+        let tangent = |fold: Option<usize>| {
+            Tangent::of(&sum(&products, |block| f64::from(Some(fold_of[block]) != fold)), &remainder.ridges)
+        };
+        let folds: Option<Vec<Tangent>> = (0..FOLDS).map(|fold| tangent(Some(fold))).collect();
+        let (folds, all) = (folds?, tangent(None)?);
         let thinned = counts.iter().sum::<f64>() / track.n_counted().max(1) as f64;
         let nothing = HeldOut { blocks: Vec::new(), counts: counts.clone(), floor_square: setting.floor_square };
         let mut field = Self {
             setting,
             state,
-            remainder,
+            ridges: remainder.ridges,
             factors: factors.into(),
             looked_at,
+            rows,
             products,
+            folds,
+            all,
             counts,
             ridge: RIDGE * thinned,
             nothing,
         };
-        let alone = Products { blocks: field.products.clone(), size: 1.0 };
-        field.nothing = field.held_out(&alone)?;
+        field.nothing = field.held_out(&field.alone())?;
         Some(field)
     }
 
@@ -110,109 +129,97 @@ impl<'a> Field<'a> {
 
     /// Products of a curve over `arguments` in proportion to `scale`; none where it is nothing anywhere.
     pub(super) fn products(&self, arguments: &[f64], scale: Scale, curve: &Curve) -> Option<Products> {
-        let (q, k) = (self.remainder.n_directions, curve.n_amplitudes());
         let factors = &self.factors[scale as usize];
-        let mut size = 0.0;
-        let mut blocks: Vec<DMatrix<f64>> = Vec::with_capacity(self.products.len());
-        let mut row: Vec<(usize, f64)> = Vec::new();
-        for (rows, known) in self.looked_at.iter().zip(&self.products) {
-            let mut cross = vec![0.0; k * (q + 1)];
-            let mut own = DMatrix::<f64>::zeros(k, k);
-            for &at in rows {
-                row.clear();
-                curve.each(arguments[at], &mut |index, value| row.push((index, value * factors[at])));
-                let tangent = &self.remainder.rows[at * (q + 1)..(at + 1) * (q + 1)];
-                for &(index, value) in &row {
-                    size += value * value;
-                    for (sum, entry) in cross[index * (q + 1)..(index + 1) * (q + 1)].iter_mut().zip(tangent) {
-                        *sum += value * entry;
-                    }
-                    for &(other, factor) in &row {
-                        own[(index, other)] += value * factor;
-                    }
-                }
+        let of_block = |(instants, rows): (&Vec<usize>, &DMatrix<f64>)| {
+            let mut columns = DMatrix::zeros(instants.len(), curve.n_amplitudes());
+            for (row, &at) in instants.iter().enumerate() {
+                curve.each(arguments[at], &mut |index, value| columns[(row, index)] += value * factors[at]);
             }
-            let width = q + k + 1;
-            let place = |index: usize| if index < q { index } else { width - 1 };
-            let mut out = DMatrix::zeros(width, width);
-            for i in 0..=q {
-                for j in 0..=q {
-                    out[(place(i), place(j))] = known[(i, j)];
-                }
-                for index in 0..k {
-                    out[(place(i), q + index)] = cross[index * (q + 1) + i];
-                    out[(q + index, place(i))] = cross[index * (q + 1) + i];
-                }
-            }
-            out.view_mut((q, q), (k, k)).copy_from(&own);
-            blocks.push(out);
-        }
-        let size = (size / (self.counts.iter().sum::<f64>().max(1.0))).sqrt();
+            (rows * &columns, columns.transpose() * columns)
+        };
+        let (mut cross, mut own): (Vec<DMatrix<f64>>, Vec<DMatrix<f64>>) =
+            self.looked_at.iter().zip(&self.rows).map(of_block).unzip();
+        let square: f64 = own.iter().map(DMatrix::trace).sum();
+        let size = (square / (self.counts.iter().sum::<f64>().max(1.0))).sqrt();
         if !(size.is_finite() && size > 1e-12) {
             return None;
         }
-        for block in &mut blocks {
-            let last = block.ncols() - 1;
-            for index in q..last {
-                block.column_mut(index).scale_mut(1.0 / size);
-                block.row_mut(index).scale_mut(1.0 / size);
-            }
-        }
-        Some(Products { blocks, size })
+        cross.iter_mut().for_each(|cross| *cross /= size);
+        own.iter_mut().for_each(|own| *own /= size * size);
+        Some(Products { cross, own, size })
     }
 
     /// Mean squares of every block under a fit to all but its fold.
     pub(super) fn held_out(&self, products: &Products) -> Option<HeldOut> {
         let fold_of = &self.setting.track.fold_of_block;
-        let total = products.sum(|_| 1.0);
         let folds: Option<Vec<DVector<f64>>> = (0..FOLDS)
-            .map(|fold| {
-                let left_out = products.sum(|block| if fold_of[block] == fold { 1.0 } else { 0.0 });
-                self.solve(&(&total - left_out))
-            })
+            .map(|fold| self.solve(&self.folds[fold], products, |block| f64::from(fold_of[block] != fold)))
             .collect();
         let folds = folds?;
-        let square = |(block, sums): (usize, &DMatrix<f64>)| {
-            let coefficients = &folds[fold_of[block]];
-            coefficients.dot(&(sums * coefficients)).max(0.0) / self.counts[block].max(1.0)
-        };
-        let blocks = products.blocks.iter().enumerate().map(square).collect();
+        let left = |block| self.left(products, block, &folds[fold_of[block]]);
+        let blocks = (0..self.n_blocks()).map(left).collect();
         Some(HeldOut { blocks, counts: self.counts.clone(), floor_square: self.setting.floor_square })
     }
 
-    /// The same for blocks drawn so many times each: fitted to what was drawn, judged on what was not; blocks that were drawn
-    /// leave nothing and count for nothing.
-    pub(super) fn out_of_bag(&self, products: &Products, times: &[f64]) -> Option<HeldOut> {
-        let coefficients = self.solve(&products.sum(|block| times[block]))?;
-        let judge = |(block, sums): (usize, &DMatrix<f64>)| {
-            let left = coefficients.dot(&(sums * &coefficients)).max(0.0) / self.counts[block].max(1.0);
-            if times[block] > 0.0 { (0.0, 0.0) } else { (left, self.counts[block]) }
+    /// The tangent space over blocks drawn so many times each; none where they do not determine it.
+    pub(super) fn drawn(&self, times: &[f64]) -> Option<Tangent> {
+        Tangent::of(&sum(&self.products, |block| times[block]), &self.ridges)
+    }
+
+    /// The same for blocks drawn so many times each, over which the tangent space is `drawn`: fitted to what was drawn, judged on
+    /// what was not; blocks that were drawn leave nothing and count for nothing.
+    pub(super) fn out_of_bag(&self, products: &Products, drawn: &Tangent, times: &[f64]) -> Option<HeldOut> {
+        let coefficients = self.solve(drawn, products, |block| times[block])?;
+        let judge = |block: usize| {
+            let is_drawn = times[block] > 0.0;
+            if is_drawn { (0.0, 0.0) } else { (self.left(products, block, &coefficients), self.counts[block]) }
         };
-        let (blocks, counts) = products.blocks.iter().enumerate().map(judge).unzip();
+        let (blocks, counts) = (0..self.n_blocks()).map(judge).unzip();
         Some(HeldOut { blocks, counts, floor_square: self.setting.floor_square })
     }
 
     /// Products without a sentence.
     pub(super) fn alone(&self) -> Products {
-        Products { blocks: self.products.clone(), size: 1.0 }
+        let cross = self.rows.iter().map(|rows| DMatrix::zeros(rows.nrows(), 0)).collect();
+        Products { cross, own: vec![DMatrix::zeros(0, 0); self.n_blocks()], size: 1.0 }
     }
 
     /// Values of the curve fitted to everything, in its unit.
     pub(super) fn amplitudes(&self, products: &Products) -> Option<Vec<f64>> {
-        let solved = self.solve(&products.sum(|_| 1.0))?;
-        let q = self.remainder.n_directions;
-        Some(solved.rows(q, solved.len() - q - 1).iter().map(|value| value / products.size).collect())
+        let solved = self.solve(&self.all, products, |_| 1.0)?;
+        let q = self.ridges.len();
+        Some(solved.rows(q + 1, solved.len() - q - 1).iter().map(|value| value / products.size).collect())
     }
 
-    /// Coefficients of the tangent space and the curve, with -1 for the residual.
-    fn solve(&self, sums: &DMatrix<f64>) -> Option<DVector<f64>> {
-        let last = sums.ncols() - 1;
-        let mut left = sums.view((0, 0), (last, last)).into_owned();
-        for index in 0..last {
-            left[(index, index)] += self.remainder.ridges.get(index).copied().unwrap_or(self.ridge);
-        }
-        let right = sums.column(last).rows(0, last).into_owned();
-        Some(left.cholesky()?.solve(&right).push(-1.0))
+    /// Coefficients of the tangent space, -1 for the residual, and those of the curve, fitted to every block so many `times`, over
+    /// which the tangent space is `tangent`.
+    fn solve(&self, tangent: &Tangent, products: &Products, times: impl Fn(usize) -> f64) -> Option<DVector<f64>> {
+        let q = self.ridges.len();
+        let (cross, mut own) = (sum(&products.cross, &times), sum(&products.own, &times));
+        let k = own.ncols();
+        (0..k).for_each(|index| own[(index, index)] += self.ridge);
+        // Without what the tangent space takes of the curve.
+        let taken = tangent.factor.solve_lower_triangular(&cross.rows(0, q))?;
+        let right = cross.row(q).transpose() - taken.tr_mul(&tangent.residual);
+        let curve = match k {
+            0 => DVector::zeros(0),
+            _ => (own - taken.tr_mul(&taken)).cholesky()?.solve(&right),
+        };
+        let rest = tangent.factor.tr_solve_lower_triangular(&(&tangent.residual - taken * &curve))?;
+        let mut solved = DVector::from_element(q + 1 + k, -1.0);
+        solved.rows_mut(0, q).copy_from(&rest);
+        solved.rows_mut(q + 1, k).copy_from(&curve);
+        Some(solved)
+    }
+
+    /// Mean square that `coefficients` leave of a block.
+    fn left(&self, products: &Products, block: usize, coefficients: &DVector<f64>) -> f64 {
+        let q = self.ridges.len();
+        let (tangent, curve) = (coefficients.rows(0, q + 1), coefficients.rows(q + 1, coefficients.len() - q - 1));
+        let square = tangent.dot(&(&self.products[block] * tangent))
+            + 2.0 * tangent.dot(&(&products.cross[block] * curve))
+            + curve.dot(&(&products.own[block] * curve));
+        square.max(0.0) / self.counts[block].max(1.0)
     }
 
     /// Instants of each block that are looked at.
@@ -221,16 +228,27 @@ impl<'a> Field<'a> {
     }
 }
 
-impl Products {
-    fn sum(&self, times: impl Fn(usize) -> f64) -> DMatrix<f64> {
-        let width = self.blocks.first().map_or(0, DMatrix::ncols);
-        let mut sum = DMatrix::zeros(width, width);
-        for (block, products) in self.blocks.iter().enumerate() {
-            let times = times(block);
-            if times != 0.0 {
-                sum.zip_apply(products, |entry, product| *entry += times * product);
-            }
-        }
-        sum
+impl Tangent {
+    /// Of products of tangent space and residual; none where they do not determine it.
+    fn of(products: &DMatrix<f64>, ridges: &[f64]) -> Option<Self> {
+        let q = ridges.len();
+        let mut left = products.view((0, 0), (q, q)).into_owned();
+        ridges.iter().enumerate().for_each(|(index, ridge)| left[(index, index)] += ridge);
+        let factor = left.cholesky()?.unpack();
+        let residual = factor.solve_lower_triangular(&products.view((0, q), (q, 1)).column(0))?;
+        Some(Self { factor, residual })
     }
+}
+
+/// Sum of `blocks`, each so many `times`.
+fn sum(blocks: &[DMatrix<f64>], times: impl Fn(usize) -> f64) -> DMatrix<f64> {
+    let (rows, columns) = blocks.first().map_or((0, 0), DMatrix::shape);
+    let mut sum = DMatrix::zeros(rows, columns);
+    for (block, products) in blocks.iter().enumerate() {
+        let times = times(block);
+        if times != 0.0 {
+            sum.zip_apply(products, |entry, product| *entry += times * product);
+        }
+    }
+    sum
 }

@@ -34,9 +34,10 @@ pub(super) fn chosen(field: &Field<'_>, said: &[Said]) -> Vec<f64> {
         .into_par_iter()
         .filter_map(|draw| {
             let times = times(draw, field.n_blocks());
-            let nothing = field.out_of_bag(&alone, &times)?;
+            let drawn = field.drawn(&times)?;
+            let nothing = field.out_of_bag(&alone, &drawn, &times)?;
             let gain = |products: &Option<Products>| -> f64 {
-                let held_out = products.as_ref().and_then(|products| field.out_of_bag(products, &times));
+                let held_out = products.as_ref().and_then(|products| field.out_of_bag(products, &drawn, &times));
                 held_out.map_or(f64::NEG_INFINITY, |held_out| nothing.log_ratio(&held_out))
             };
             let gains: Vec<f64> = products.iter().map(gain).collect();
