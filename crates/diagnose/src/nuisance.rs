@@ -125,7 +125,7 @@ impl Nuisance {
     #[must_use]
     pub fn with(&self, group: Group, columns: Vec<Vec<f64>>, counted: &[bool], precision: f64) -> Self {
         let (columns, scales): (Vec<Vec<f64>>, Vec<f64>) =
-            columns.into_iter().map(|column| normalized(column, counted)).unzip();
+            columns.into_par_iter().map(|column| normalized(column, counted)).unzip();
         let (before, more, n_instants) = (self.n, columns.len(), counted.len());
         let n = before + more;
         let mut rows = Vec::with_capacity(n * n_instants);
@@ -209,18 +209,19 @@ impl Nuisance {
     /// of time, rate or history can hide behind or grow from.
     #[must_use]
     pub fn with_free_map(&self, track: &Track, coordinates: &Coordinates) -> Self {
-        let plane = |n: [usize; 2], sign: &dyn Fn(usize) -> f64| {
+        let plane = |n: [usize; 2], sign: &(dyn Fn(usize) -> f64 + Sync)| {
             let [by_pressure, by_contraction] = [0, 1].map(|index| {
                 let values = coordinates.of_kind(MAPPED[index]);
                 let knots = knots(values, &track.counted, n[index]);
-                values.iter().map(|&value| hats(&knots, value)).collect::<Vec<Vec<f64>>>()
+                values.par_iter().map(|&value| hats(&knots, value)).collect::<Vec<Vec<f64>>>()
             });
             let [rows, columns] = [&by_pressure, &by_contraction].map(|hats| hats.first().map_or(0, Vec::len));
             let product = |(i, j): (usize, usize)| {
                 let hats = by_pressure.iter().zip(&by_contraction).enumerate();
                 hats.map(|(at, (pressure, contraction))| sign(at) * pressure[i] * contraction[j]).collect()
             };
-            (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))).map(product).collect::<Vec<Vec<f64>>>()
+            let places: Vec<(usize, usize)> = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))).collect();
+            places.into_par_iter().map(product).collect::<Vec<Vec<f64>>>()
         };
         let even = plane(FREE_EVEN, &|_| 1.0);
         let odd = plane(FREE_ODD, &|at| track.instants[at].moment.direction);

@@ -129,16 +129,33 @@ impl<'a> Field<'a> {
 
     /// Products of a curve over `arguments` in proportion to `scale`; none where it is nothing anywhere.
     pub(super) fn products(&self, arguments: &[f64], scale: Scale, curve: &Curve) -> Option<Products> {
-        let factors = &self.factors[scale as usize];
-        let of_block = |(instants, rows): (&Vec<usize>, &DMatrix<f64>)| {
-            let mut columns = DMatrix::zeros(instants.len(), curve.n_amplitudes());
+        self.products_by(arguments, &[scale], curve).pop()?
+    }
+
+    /// The same in proportion to each of `scales`.
+    pub(super) fn products_by(&self, arguments: &[f64], scales: &[Scale], curve: &Curve) -> Vec<Option<Products>> {
+        let k = curve.n_amplitudes();
+        let mut of_scales: Vec<(Vec<DMatrix<f64>>, Vec<DMatrix<f64>>)> = vec![(Vec::new(), Vec::new()); scales.len()];
+        for (instants, rows) in self.looked_at.iter().zip(&self.rows) {
+            let mut columns = DMatrix::zeros(instants.len(), scales.len() * k);
             for (row, &at) in instants.iter().enumerate() {
-                curve.each(arguments[at], &mut |index, value| columns[(row, index)] += value * factors[at]);
+                curve.each(arguments[at], &mut |index, value| {
+                    for (place, &scale) in scales.iter().enumerate() {
+                        columns[(row, place * k + index)] += value * self.factors[scale as usize][at];
+                    }
+                });
             }
-            (rows * &columns, columns.transpose() * columns)
-        };
-        let (mut cross, mut own): (Vec<DMatrix<f64>>, Vec<DMatrix<f64>>) =
-            self.looked_at.iter().zip(&self.rows).map(of_block).unzip();
+            let cross = rows * &columns;
+            for (place, (crosses, owns)) in of_scales.iter_mut().enumerate() {
+                let columns = columns.columns(place * k, k);
+                crosses.push(cross.columns(place * k, k).into_owned());
+                owns.push(columns.transpose() * columns);
+            }
+        }
+        of_scales.into_iter().map(|(cross, own)| self.of_size_one(cross, own)).collect()
+    }
+
+    fn of_size_one(&self, mut cross: Vec<DMatrix<f64>>, mut own: Vec<DMatrix<f64>>) -> Option<Products> {
         let square: f64 = own.iter().map(DMatrix::trace).sum();
         let size = (square / (self.counts.iter().sum::<f64>().max(1.0))).sqrt();
         if !(size.is_finite() && size > 1e-12) {

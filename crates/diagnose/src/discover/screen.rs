@@ -88,16 +88,15 @@ pub(super) fn screen(field: &Field<'_>, setting: &Setting<'_>, state: &State) ->
             let sorted = field.sorted(&arguments);
             let fine: &[usize] = if memory.n_parameters() == 0 { &FINE_KNOTS } else { &[] };
             let numbers = std::iter::once(&FIRST_KNOTS).chain(fine);
-            let curves: Vec<Curve> = numbers.filter_map(|&n| spline(&sorted, n)).collect();
-            Scale::ALL
-                .iter()
-                .filter_map(|&scale| {
-                    let tried = curves.iter().filter_map(|curve| {
-                        said(field, &Sentence { scale, shape: curve.clone(), ..sentence.clone() }, &arguments)
-                    });
-                    best(tried)
-                })
-                .collect()
+            let mut of_scales: Vec<Vec<Said>> = vec![Vec::new(); Scale::ALL.len()];
+            for shape in numbers.filter_map(|&n| spline(&sorted, n)) {
+                let products = field.products_by(&arguments, &Scale::ALL, &shape);
+                for ((scale, said), products) in Scale::ALL.into_iter().zip(&mut of_scales).zip(products) {
+                    let sentence = Sentence { scale, shape: shape.clone(), ..sentence.clone() };
+                    said.extend(products.and_then(|products| judged(field, &sentence, &arguments, &products)));
+                }
+            }
+            of_scales.into_iter().filter_map(|said| best(said.into_iter())).collect()
         })
         .collect();
     let mut found: Vec<Said> = Vec::new();
