@@ -123,14 +123,23 @@ impl Regressors<'_> {
         self.only.is_none_or(|only| only[at])
     }
 
-    /// Columns of one more guess that only adds, over the moments of `sheet`, row-major.
-    pub fn more_columns(&self, sheet: &DesignMatrix, guess: &CandidateEffect, model: &ForceModel) -> Vec<f64> {
+    /// Columns of one more guess that only adds, over the moments of `sheet`, row-major: those of the instants `listed`, which rise.
+    pub fn more_columns(
+        &self,
+        sheet: &DesignMatrix,
+        guess: &CandidateEffect,
+        model: &ForceModel,
+        listed: &[usize],
+    ) -> Vec<f64> {
         let n = guess.amplitudes().len();
-        let mut columns = vec![0.0; self.track.n() * n];
+        let mut columns = vec![0.0; listed.len() * n];
+        let mut passing = vec![0.0; n];
+        let mut rows = columns.chunks_exact_mut(n).zip(listed).peekable();
         for (recording, range) in self.track.recordings.iter().enumerate() {
             let mut memory = guess.start_in(recording, model.muscle());
             for at in range.clone() {
-                memory.pulls(&sheet.seen[at], &sheet.base[at], &mut columns[at * n..(at + 1) * n]);
+                let row = rows.next_if(|(_, next)| **next == at).map_or(&mut passing[..], |(row, _)| row);
+                memory.pulls(&sheet.seen[at], &sheet.base[at], row);
             }
         }
         columns

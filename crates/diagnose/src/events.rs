@@ -19,7 +19,8 @@ const UNEVEN: f64 = 0.05;
 /// Whether `guess`, beside `state`, is of one size at all pressures and contractions.
 pub(crate) fn is_even(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> bool {
     let ground = Regressors { track: setting.track, columns: setting.columns, only: None, slopes: true };
-    let own = ground.more_columns(&state.sheet, guess, &state.model);
+    let every: Vec<usize> = (0..setting.track.n()).collect();
+    let own = ground.more_columns(&state.sheet, guess, &state.model, &every);
     let moments = || setting.track.instants.iter().map(|instant| &instant.moment);
     let uneven = |of: &dyn Fn(&Moment) -> f64| -> Vec<f64> {
         let over = over_range(&moments().map(of).collect::<Vec<f64>>(), &setting.track.counted);
@@ -29,8 +30,8 @@ pub(crate) fn is_even(setting: &Setting<'_>, state: &State, guess: &CandidateEff
     let formed = setting.nuisance.with_forms(columns, &setting.track.counted);
     let beside = Setting { nuisance: &formed, ..*setting };
     let guesses: Vec<CandidateEffect> = state.guesses.iter().chain([guess]).cloned().collect();
-    let mean_square = |setting: &Setting<'_>| Some(setting.fit_near(guesses.clone(), state)?.fit.mean_square);
-    let (Some(even), Some(bent)) = (mean_square(setting), mean_square(&beside)) else { return false };
+    let left = (setting.left_near(&guesses, state), beside.left_near(&guesses, state));
+    let (Some(even), Some(bent)) = left else { return false };
     even - bent <= UNEVEN * (state.fit.mean_square - even)
 }
 

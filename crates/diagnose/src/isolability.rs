@@ -129,7 +129,8 @@ fn left_of_forms(setting: &Setting<'_>, state: &State, tangent: &Tangent, guess:
     if guess.only_adds() {
         let ground = Regressors { track: setting.track, columns: setting.columns, only: None, slopes: true };
         let k = guess.amplitudes().len();
-        let columns = ground.more_columns(&state.sheet, guess, &state.model);
+        let every: Vec<usize> = (0..setting.track.n()).collect();
+        let columns = ground.more_columns(&state.sheet, guess, &state.model, &every);
         let sizes = guess.effect.page().typical.amplitudes;
         return (0..k)
             .map(|column| {

@@ -29,8 +29,8 @@ pub struct Normal {
     triangle: Vec<f64>,
     /// Reference weights, `n` of them.
     reference: Vec<f64>,
-    /// Which rows count, ascending.
-    counted: Vec<usize>,
+    /// Instants of the rows, ascending.
+    listed: Vec<usize>,
     blocks: Vec<Block>,
 }
 
@@ -121,7 +121,12 @@ impl Normal {
                 Block { range, nuisances, rows, products }
             })
             .collect();
-        Self { q: nuisance.n(), precision: nuisance.precision.clone(), n, triangle, reference, counted: listed, blocks }
+        Self { q: nuisance.n(), precision: nuisance.precision.clone(), n, triangle, reference, listed, blocks }
+    }
+
+    /// Instants of the rows, ascending.
+    pub fn listed(&self) -> &[usize] {
+        &self.listed
     }
 
     /// Rows of each block that count.
@@ -132,7 +137,7 @@ impl Normal {
     /// Instants of the rows that count, of one block after the other, each with the row's `Z`, `n` values.
     pub fn rows(&self) -> impl Iterator<Item = (usize, impl Iterator<Item = f64>)> {
         self.blocks.iter().flat_map(move |block| {
-            let here = self.counted[block.range.clone()].iter().enumerate();
+            let here = self.listed[block.range.clone()].iter().enumerate();
             here.map(move |(row, &at)| (at, (0..self.n).map(move |column| block.rows[(row, column)])))
         })
     }
@@ -155,34 +160,34 @@ impl Normal {
         (0..n).map(|row| (row..n).map(|column| self.triangle[row * n + column] * slope[column]).sum()).collect()
     }
 
-    /// With `more` columns (row-major, `k` per row) behind, of which the `firm` first are free and the others drawn to zero as
+    /// With `more` columns (row-major, `k` for each of the rows) behind, of which the `firm` first are free and the others drawn to zero as
     /// nuisances are.
     pub fn extend(&self, more: &[f64], k: usize, firm: usize) -> Extended<'_> {
         let (q, n) = (self.q, self.n);
         if k == 0 {
             return self.alone();
         }
-        let scales: Vec<f64> = (0..k)
-            .map(|column| {
-                let squares: f64 = self.counted.iter().map(|&at| more[at * k + column].powi(2)).sum();
-                if squares.is_finite() { squares.sqrt() } else { 0.0 }
-            })
-            .collect();
-        let drawn = (0..k)
-            .map(|column| {
-                let there = self.counted.iter().filter(|&&at| more[at * k + column] != 0.0).count();
-                if column < firm { 0.0 } else { nuisance::LOOSE / there.max(1) as f64 }
-            })
-            .collect();
-        let inverse: Vec<f64> = scales.iter().map(|&scale| if scale > 0.0 { 1.0 / scale } else { 0.0 }).collect();
+        let (mut squares, mut there) = (vec![0.0; k], vec![0_usize; k]);
+        for row in more.chunks_exact(k) {
+            for ((square, there), value) in squares.iter_mut().zip(&mut there).zip(row) {
+                *square += value * value;
+                *there += usize::from(*value != 0.0);
+            }
+        }
+        let size = |square: f64| if square.is_finite() { square.sqrt() } else { 0.0 };
+        let scales: Vec<f64> = squares.into_iter().map(size).collect();
+        let precision = |there: usize| nuisance::LOOSE / there.max(1) as f64;
+        let drawn = there.into_iter().enumerate();
+        let drawn = drawn.map(|(column, there)| if column < firm { 0.0 } else { precision(there) }).collect();
         let products = self
             .blocks
             .par_iter()
             .map(|block| {
-                let here = &self.counted[block.range.clone()];
-                let added = DMatrix::from_fn(here.len(), k, |row, column| {
-                    if scales[column] > 0.0 { more[here[row] * k + column] * inverse[column] } else { 0.0 }
-                });
+                let here = &more[block.range.start * k..block.range.end * k];
+                let mut added = DMatrix::from_row_slice(block.range.len(), k, here);
+                for (mut column, &scale) in added.column_iter_mut().zip(&scales) {
+                    if scale > 0.0 { column /= scale } else { column.fill(0.0) }
+                }
                 let last = q + n;
                 let mut out = DMatrix::zeros(last + k + 1, last + k + 1);
                 out.view_mut((0, 0), (last, last)).copy_from(&block.products.view((0, 0), (last, last)));

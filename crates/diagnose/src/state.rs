@@ -56,6 +56,24 @@ pub struct Setting<'a> {
     pub effects: &'a [&'static dyn Effect],
 }
 
+/// `rows`, those that `state` was fitted to, with one of `columns` (over all instants) after the other behind each, as much of them as
+/// the cell reads; all of an event, which has one column.
+fn beside_rows(state: &State, rows: Vec<f64>, columns: &[Vec<f64>], is_event: bool) -> Vec<f64> {
+    let listed = state.normal.listed();
+    let width = rows.len() / listed.len().max(1);
+    let joined = if columns.is_empty() {
+        rows
+    } else {
+        let mut joined = Vec::with_capacity(rows.len() + listed.len() * columns.len());
+        for (row, &at) in listed.iter().enumerate() {
+            joined.extend_from_slice(&rows[row * width..(row + 1) * width]);
+            joined.extend(columns.iter().map(|column| column[at]));
+        }
+        joined
+    };
+    state.read.scaled(joined, width + columns.len(), listed, if is_event { &[0] } else { &[] })
+}
+
 /// A hypothesis with its joint fit.
 #[derive(Debug, Clone)]
 pub struct State {
@@ -141,10 +159,10 @@ impl Read {
         &self,
         mut rows: Vec<f64>,
         width: usize,
-        listed: impl IntoIterator<Item = usize>,
+        listed: &[usize],
         unread: &[usize],
     ) -> Vec<f64> {
-        for (row, at) in rows.chunks_exact_mut(width.max(1)).zip(listed) {
+        for (row, &at) in rows.chunks_exact_mut(width.max(1)).zip(listed) {
             let slope = self.slopes[at];
             if slope != 1.0 {
                 let read = row.iter_mut().enumerate().filter(|(index, _)| !unread.contains(index));
@@ -297,7 +315,7 @@ impl<'a> Setting<'a> {
         let mut start = near.to_vec();
         let mut rounds_left = READ_ROUNDS;
         loop {
-            let seen = read.scaled(columns.clone(), width, listed.iter().copied(), &events);
+            let seen = read.scaled(columns.clone(), width, &listed, &events);
             let forces_n: Vec<f64> = listed.iter().map(|&at| measured_n(at) - read.offsets_n[at]).collect();
             let (own, blocks) = (listed.clone(), blocks.clone());
             let normal =
@@ -366,13 +384,12 @@ impl<'a> Setting<'a> {
     /// Joint fit of `state` and one more guess that only adds.
     pub fn fit_more(&self, state: &State, guess: &CandidateEffect) -> Option<JointFit> {
         let (rows, limits) = self.more(state, guess);
-        self.joint(&limits).fit_all(&self.extended(state, &rows, guess), &state.fit.x)
+        self.joint(&limits).fit_all(&rows, &state.fit.x)
     }
 
     /// Joint fit of `state` and one more guess that only adds, and its mean squares over held-out blocks.
     pub fn weigh_more(&self, state: &State, guess: &CandidateEffect) -> Option<(JointFit, HeldOut)> {
         let (rows, limits) = self.more(state, guess);
-        let rows = self.extended(state, &rows, guess);
         let joint = self.joint(&limits);
         let held_out = joint.hold_out(&rows, &state.fit.x, &self.track.fold_of_block)?;
         Some((joint.fit_all(&rows, &state.fit.x)?, held_out))
@@ -384,39 +401,22 @@ impl<'a> Setting<'a> {
         let beginnings = self.beginnings(state, guess);
         let mut limits = ranges(&state.guesses);
         limits.extend(beginnings.iter().map(|_| before(guess)));
-        let rows = self.beside_rows(state, Vec::new(), &beginnings, false);
+        let rows = beside_rows(state, Vec::new(), &beginnings, false);
         let rows = state.normal.extend(&rows, beginnings.len(), 0);
         self.joint(&limits).hold_out(&rows, &state.fit.x, &self.track.fold_of_block)
     }
 
-    fn extended<'b>(&self, state: &'b State, rows: &[f64], guess: &CandidateEffect) -> Extended<'b> {
-        let width = rows.len() / self.track.n();
-        state.normal.extend(rows, width, guess.amplitudes().len())
-    }
-
-    /// Columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes; where it is carried,
-    /// what it begins with in every recording stands behind them.
-    fn more(&self, state: &State, guess: &CandidateEffect) -> (Vec<f64>, Vec<(f64, f64)>) {
-        let rows = self.ground().more_columns(&state.sheet, guess, &state.model);
+    /// `state` with the columns of one more guess, as much of them as the cell reads, and the ranges of all amplitudes; where it is
+    /// carried, what it begins with in every recording stands behind them.
+    fn more<'b>(&self, state: &'b State, guess: &CandidateEffect) -> (Extended<'b>, Vec<(f64, f64)>) {
+        let rows = self.ground().more_columns(&state.sheet, guess, &state.model, state.normal.listed());
         let mut limits = ranges(&state.guesses);
         limits.extend(guess.ranges());
         let beginnings = if guess.has_own_beginnings() { self.beginnings(state, guess) } else { Vec::new() };
         limits.extend(beginnings.iter().map(|_| before(guess)));
-        (self.beside_rows(state, rows, &beginnings, guess.effect.kind() == Kind::Event), limits)
-    }
-
-    /// `rows` with one of `columns` after the other behind each, as much of them as the cell reads; all of an event, which has one column.
-    fn beside_rows(&self, state: &State, rows: Vec<f64>, columns: &[Vec<f64>], is_event: bool) -> Vec<f64> {
-        let n = self.track.n();
-        let width = rows.len() / n;
-        if columns.is_empty() {
-            return state.read.scaled(rows, width, 0..n, if is_event { &[0] } else { &[] });
-        }
-        let joined = (0..n).flat_map(|at| {
-            let own = rows[at * width..(at + 1) * width].iter().copied();
-            own.chain(columns.iter().map(move |column| column[at]))
-        });
-        state.read.scaled(joined.collect(), width + columns.len(), 0..n, &[])
+        let firm = guess.amplitudes().len();
+        let rows = beside_rows(state, rows, &beginnings, guess.effect.kind() == Kind::Event);
+        (state.normal.extend(&rows, firm + beginnings.len(), firm), limits)
     }
 
     /// What `guess` leaves in every recording of what went before it: a column for each recording and amplitude, in which
