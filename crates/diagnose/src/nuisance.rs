@@ -133,18 +133,7 @@ impl Nuisance {
             rows.extend_from_slice(&self.rows[at * before..(at + 1) * before]);
             rows.extend(columns.iter().map(|column| column[at]));
         }
-        let mut out = Self {
-            n,
-            rows: Arc::new(rows),
-            precision: self.precision.clone(),
-            scales: self.scales.clone(),
-            groups: self.groups.clone(),
-            products: Arc::default(),
-        };
-        out.scales.extend(scales);
-        out.precision.extend(std::iter::repeat_n(precision, more));
-        out.groups.push((group, before..n));
-        out
+        self.behind(group, rows, scales, precision)
     }
 
     /// With `columns` as other forms of an effect that was named.
@@ -209,23 +198,60 @@ impl Nuisance {
     /// of time, rate or history can hide behind or grow from.
     #[must_use]
     pub fn with_free_map(&self, track: &Track, coordinates: &Coordinates) -> Self {
-        let plane = |n: [usize; 2], sign: &(dyn Fn(usize) -> f64 + Sync)| {
-            let [by_pressure, by_contraction] = [0, 1].map(|index| {
-                let values = coordinates.of_kind(MAPPED[index]);
-                let knots = knots(values, &track.counted, n[index]);
-                values.par_iter().map(|&value| hats(&knots, value)).collect::<Vec<Vec<f64>>>()
+        let plane = |n: [usize; 2], sign: &dyn Fn(usize) -> f64| -> (usize, Vec<[(usize, f64); 4]>) {
+            let values = MAPPED.map(|kind| coordinates.of_kind(kind));
+            let [rows, columns] = [0, 1].map(|index| knots(values[index], &track.counted, n[index]));
+            let entries = values[0].iter().zip(values[1]).enumerate().map(|(at, (pressure, contraction))| {
+                let [below, above] = hats(&rows, *pressure);
+                let [before, behind] = hats(&columns, *contraction);
+                [(below, before), (below, behind), (above, before), (above, behind)].map(
+                    |((i, by_pressure), (j, by_contraction))| {
+                        (i * columns.len() + j, sign(at) * by_pressure * by_contraction)
+                    },
+                )
             });
-            let [rows, columns] = [&by_pressure, &by_contraction].map(|hats| hats.first().map_or(0, Vec::len));
-            let product = |(i, j): (usize, usize)| {
-                let hats = by_pressure.iter().zip(&by_contraction).enumerate();
-                hats.map(|(at, (pressure, contraction))| sign(at) * pressure[i] * contraction[j]).collect()
-            };
-            let places: Vec<(usize, usize)> = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))).collect();
-            places.into_par_iter().map(product).collect::<Vec<Vec<f64>>>()
+            (rows.len() * columns.len(), entries.collect())
         };
         let even = plane(FREE_EVEN, &|_| 1.0);
         let odd = plane(FREE_ODD, &|at| track.instants[at].moment.direction);
-        self.with(Group::EvenMap, even, &track.counted, LOOSE).with(Group::OddMap, odd, &track.counted, LOOSE)
+        self.with_sparse(Group::EvenMap, even, &track.counted).with_sparse(Group::OddMap, odd, &track.counted)
+    }
+
+    /// With so many columns of `group` behind, of which every instant has up to four that are not zero.
+    fn with_sparse(&self, group: Group, (more, entries): (usize, Vec<[(usize, f64); 4]>), counted: &[bool]) -> Self {
+        let mut sums = vec![(0.0, 0.0); more];
+        for (entries, _) in entries.iter().zip(counted).filter(|(_, counted)| **counted) {
+            for &(column, value) in entries.iter().filter(|(_, value)| *value != 0.0) {
+                sums[column].0 += value * value;
+                sums[column].1 += 1.0;
+            }
+        }
+        let scales: Vec<f64> = sums.into_iter().map(|(squares, count)| scale(squares, count)).collect();
+        let before = self.n;
+        let n = before + more;
+        let mut rows = vec![0.0; n * entries.len()];
+        for (at, (row, entries)) in rows.chunks_exact_mut(n).zip(&entries).enumerate() {
+            row[..before].copy_from_slice(self.row(at));
+            for &(column, value) in entries {
+                row[before + column] += value * scales[column];
+            }
+        }
+        self.behind(group, rows, scales, LOOSE)
+    }
+
+    /// `rows`, of which those of `self` are the first columns, with the `scales` and the `precision` of the others.
+    fn behind(&self, group: Group, rows: Vec<f64>, scales: Vec<f64>, precision: f64) -> Self {
+        let n = self.n + scales.len();
+        let mut groups = self.groups.clone();
+        groups.push((group, self.n..n));
+        Self {
+            n,
+            rows: Arc::new(rows),
+            precision: self.precision.iter().copied().chain(std::iter::repeat_n(precision, scales.len())).collect(),
+            scales: [&self.scales[..], &scales].concat(),
+            groups,
+            products: Arc::default(),
+        }
     }
 
     /// With `columns` of the curve of a term without a name.
@@ -302,10 +328,15 @@ fn normalized(mut column: Vec<f64>, counted: &[bool]) -> (Vec<f64>, f64) {
         squares += value * value;
         count += 1.0;
     }
-    let size = f64::sqrt(squares / f64::max(count, 1.0));
-    let scale = if size.is_finite() && size > 1e-9 { 1.0 / size } else { 0.0 };
+    let scale = scale(squares, count);
     column.iter_mut().for_each(|value| *value = if scale > 0.0 { *value * scale } else { 0.0 });
     (column, scale)
+}
+
+/// The factor that gives `count` values with such a sum of `squares` a root mean square of one; zero for hardly anything.
+fn scale(squares: f64, count: f64) -> f64 {
+    let size = f64::sqrt(squares / f64::max(count, 1.0));
+    if size.is_finite() && size > 1e-9 { 1.0 / size } else { 0.0 }
 }
 
 /// Lowest and highest of `values` over what counts.
@@ -337,17 +368,13 @@ fn knots(values: &[f64], counted: &[bool], n: usize) -> Vec<f64> {
     knots
 }
 
-/// Value of each piecewise linear function between `knots`; they sum to one.
-fn hats(knots: &[f64], value: f64) -> Vec<f64> {
-    let mut hats = vec![0.0; knots.len()];
+/// The two piecewise linear functions between `knots` that are not zero at `value`; they sum to one.
+fn hats(knots: &[f64], value: f64) -> [(usize, f64); 2] {
     if knots.len() < 2 {
-        hats.fill(1.0);
-        return hats;
+        return [(0, 1.0), (0, 0.0)];
     }
-    for (index, share) in structure::hats(knots, value, 1.0).into_iter().take(2) {
-        hats[index as usize] = share;
-    }
-    hats
+    let [below, above, ..] = structure::hats(knots, value, 1.0);
+    [below, above].map(|(index, share)| (index as usize, share))
 }
 
 #[cfg(test)]
@@ -368,9 +395,9 @@ mod tests {
     fn piecewise_linear_functions_sum_to_one() {
         let knots = [0.0, 1.0, 4.0, 5.0];
         for value in [-3.0, 0.0, 0.3, 1.0, 3.9, 5.0, 70.0] {
-            assert!((hats(&knots, value).iter().sum::<f64>() - 1.0).abs() < 1e-12, "{value}");
+            assert!((hats(&knots, value).iter().map(|hat| hat.1).sum::<f64>() - 1.0).abs() < 1e-12, "{value}");
         }
-        assert_eq!(hats(&[2.0], 7.0), [1.0]);
+        assert_eq!(hats(&[2.0], 7.0)[0], (0, 1.0));
     }
 
     #[test]
