@@ -258,7 +258,7 @@ impl<'a> Setting<'a> {
 
     /// Mean square of the fit of `guesses` and the base, starting from `state`.
     pub fn left_near(&self, guesses: &[CandidateEffect], state: &State) -> Option<f64> {
-        let ground = Regressors { slopes: false, ..self.ground() };
+        let ground = Regressors { only: Some(self.counted()), slopes: false, ..self.ground() };
         let columns = ground.wanted_columns(guesses, &state.model);
         let (listed, blocks) = self.listed();
         let width = N_COLUMNS + n_amplitudes(guesses);
@@ -449,6 +449,23 @@ impl<'a> Setting<'a> {
 #[cfg(test)]
 mod tests {
     use crate::rehearsal::tests::Given;
+
+    #[test]
+    fn what_a_fit_leaves_is_the_same_with_and_without_its_state() {
+        let mut given = Given::of(&["isobaric-triangles", "multisine"], &[]);
+        given.disturb();
+        assert!(given.track.counted.iter().any(|counted| !counted));
+        let whole = given.setting();
+        let state = whole.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        for setting in [given.setting(), given.setting().sampled(), given.setting().sampled_in_blocks()] {
+            for guess in [given.guess("pressure-lag", &[0.2, 0.0]), given.guess("slack", &[0.0, 0.0])] {
+                let guesses = vec![guess];
+                let left = setting.left_near(&guesses, &state).expect("a fit");
+                let fitted = setting.fit_near(guesses, &state).expect("a fit").fit.mean_square;
+                assert!((left / fitted - 1.0).abs() < 1e-9, "{left} {fitted}");
+            }
+        }
+    }
 
     #[test]
     fn a_recording_that_differs_from_the_others_is_foretold_worst_and_a_single_one_is_not_foretold() {
