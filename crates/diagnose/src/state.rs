@@ -465,6 +465,10 @@ mod tests {
                 assert!((left / fitted - 1.0).abs() < 1e-9, "{left} {fitted}");
             }
         }
+        // In blocks or not, the instants are the same.
+        let [one, other] = [whole.sampled(), whole.sampled_in_blocks()]
+            .map(|setting| setting.fit(Vec::new(), &given.start, &given.model).expect("a fit").fit.mean_square);
+        assert!((one / other - 1.0).abs() < 1e-9, "{one} {other}");
     }
 
     #[test]

@@ -269,3 +269,88 @@ fn sum(blocks: &[DMatrix<f64>], times: impl Fn(usize) -> f64) -> DMatrix<f64> {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use pam_muscle::effects::sentence::{Driver, Recall};
+
+    use super::*;
+    use crate::rehearsal::tests::Given;
+
+    /// Least squares of tangent space and curve together over the looked-at instants of the blocks in which `takes` is true: the
+    /// coefficients, and the mean square that they leave of `block`.
+    fn together(
+        field: &Field<'_>,
+        columns: &dyn Fn(usize) -> Vec<f64>,
+        takes: &dyn Fn(usize) -> bool,
+        block: usize,
+    ) -> (DVector<f64>, f64) {
+        let remainder = ProjectedResidual::of(field.setting, field.state);
+        let q = remainder.n_directions;
+        let row = |at: usize| {
+            let own = &remainder.rows[at * (q + 1)..(at + 1) * (q + 1)];
+            (DVector::from_vec([&own[..q], &columns(at)].concat()), own[q])
+        };
+        let width = row(field.looked_at[0][0]).0.len();
+        let (mut left, mut right) = (DMatrix::zeros(width, width), DVector::zeros(width));
+        for at in (0..field.n_blocks()).filter(|&block| takes(block)).flat_map(|block| &field.looked_at[block]) {
+            let (row, residual_n) = row(*at);
+            left += &row * row.transpose();
+            right += row * residual_n;
+        }
+        for index in 0..width {
+            left[(index, index)] += remainder.ridges.get(index).copied().unwrap_or(field.ridge);
+        }
+        let solved = left.lu().solve(&right).expect("a solution");
+        let squares = field.looked_at[block].iter().map(|&at| {
+            let (row, residual_n) = row(at);
+            (residual_n - row.dot(&solved)).powi(2)
+        });
+        let square = squares.sum::<f64>() / field.looked_at[block].len() as f64;
+        (solved, square)
+    }
+
+    #[test]
+    fn a_sentence_on_top_of_the_tangent_space_is_fitted_as_both_together_are() {
+        let mut given = Given::of(&["isobaric-triangles", "multisine"], &[]);
+        for instant in &mut given.track.instants {
+            let off = (instant.moment.contraction_ratio - 0.1) / 0.02;
+            instant.force_n += 8.0 * (-off * off).exp();
+        }
+        given.disturb();
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let field = Field::of(&setting, &state).expect("a field");
+        let shape = Curve::Spline { knots: vec![0.0, 0.05, 0.09, 0.11, 0.15, 0.25] };
+        let memory = Recall::None;
+        let sentence = Sentence { driver: Driver::Contraction, memory, scale: Scale::Pressure, shape, seen: [0.0, 1.0] };
+        let arguments = field.arguments(&sentence);
+        let products = field.products(&arguments, sentence.scale, &sentence.shape).expect("products");
+        let columns = |at: usize| {
+            let mut columns = vec![0.0; sentence.shape.n_amplitudes()];
+            sentence.shape.columns(arguments[at], &mut columns);
+            columns.iter().map(|column| column * field.factors[Scale::Pressure as usize][at] / products.size).collect()
+        };
+        let close = |one: f64, other: f64, of: f64| assert!((one - other).abs() < 1e-7 * of, "{one} {other}");
+
+        let found = field.amplitudes(&products).expect("a fit");
+        let (all, _) = together(&field, &columns, &|_| true, 0);
+        let largest = found.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        for (value, other) in found.iter().zip(all.iter().skip(field.ridges.len())) {
+            close(*value, other / products.size, largest);
+        }
+
+        let held_out = field.held_out(&products).expect("folds");
+        let fold_of = &given.track.fold_of_block;
+        for block in 0..field.n_blocks() {
+            let (_, square) = together(&field, &columns, &|other| fold_of[other] != fold_of[block], block);
+            close(held_out.blocks[block], square, square);
+        }
+
+        // Drawn once each, all blocks are as they are.
+        let once = vec![1.0; field.n_blocks()];
+        let drawn = field.drawn(&once).expect("a tangent space");
+        let out = field.out_of_bag(&products, &drawn, &once).expect("a fit");
+        assert!(out.counts.iter().all(|count| *count == 0.0));
+    }
+}
