@@ -94,8 +94,13 @@ impl Shown {
     fn against(self, effect: &dyn Effect, evidence: f64, chance: f64) -> Option<Against> {
         let limit = if self.share >= LEAST_SHARE { AS_LIKELY } else { UNLIKELY };
         let is_shown = self.is_surely_there || self.share >= SHOWN;
-        let stands = if evidence >= STRONG { self.is_surely_there || chance < limit } else { is_shown && chance < limit };
-        if self.share < self.least_share(effect) { Some(Against::HeldOut) } else { (!stands).then_some(Against::Chance) }
+        let stands =
+            if evidence >= STRONG { self.is_surely_there || chance < limit } else { is_shown && chance < limit };
+        if self.share < self.least_share(effect) {
+            Some(Against::HeldOut)
+        } else {
+            (!stands).then_some(Against::Chance)
+        }
     }
 
     /// What `effect` must take away at least. What happened once did not happen there, and where what outlasts a recording begins in them
@@ -189,15 +194,12 @@ mod tests {
     #[test]
     fn a_name_stands_on_evidence_or_on_what_others_show() {
         let lag = effect("pressure-lag").expect("an id");
-        let weak = |share: f64, is_surely_there: bool| {
-            Shown { share, own: 0.1, is_surely_there }.against(lag, 7.9, 1e-9)
-        };
+        let weak =
+            |share: f64, is_surely_there: bool| Shown { share, own: 0.1, is_surely_there }.against(lag, 7.9, 1e-9);
         assert_eq!(weak(0.4, false), Some(Against::Chance));
         assert_eq!((weak(0.6, false), weak(0.4, true)), (None, None), "others show it");
         assert_eq!(against("pressure-lag", 0.4, 0.1, 1e-9), None, "evidence is enough");
-        let there = |evidence: f64| {
-            Shown { share: 0.3, own: 0.3, is_surely_there: true }.against(lag, evidence, 0.6)
-        };
+        let there = |evidence: f64| Shown { share: 0.3, own: 0.3, is_surely_there: true }.against(lag, evidence, 0.6);
         assert_eq!((there(8.0), there(7.9)), (None, Some(Against::Chance)), "both say so");
     }
 

@@ -215,12 +215,7 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    fn of(
-        ground: &Regressors<'a>,
-        recording: usize,
-        guesses: &'a [CandidateEffect],
-        model: &'a ForceModel,
-    ) -> Self {
+    fn of(ground: &Regressors<'a>, recording: usize, guesses: &'a [CandidateEffect], model: &'a ForceModel) -> Self {
         Self {
             columns: ground.columns,
             model,
@@ -287,7 +282,6 @@ fn split_off<'a, T>(slice: &mut &'a mut [T], n: usize) -> &'a mut [T] {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::rehearsal::tests::Given;
 
     #[test]

@@ -155,13 +155,7 @@ impl Read {
 
     /// As much of `rows`, `width` columns for each of the instants `listed`, as the cell reads; all of the columns `unread`, which
     /// come on top of what it reads.
-    fn scaled(
-        &self,
-        mut rows: Vec<f64>,
-        width: usize,
-        listed: &[usize],
-        unread: &[usize],
-    ) -> Vec<f64> {
+    fn scaled(&self, mut rows: Vec<f64>, width: usize, listed: &[usize], unread: &[usize]) -> Vec<f64> {
         for (row, &at) in rows.chunks_exact_mut(width.max(1)).zip(listed) {
             let slope = self.slopes[at];
             if slope != 1.0 {
@@ -318,8 +312,7 @@ impl<'a> Setting<'a> {
             let seen = read.scaled(columns.clone(), width, &listed, &events);
             let forces_n: Vec<f64> = listed.iter().map(|&at| measured_n(at) - read.offsets_n[at]).collect();
             let (own, blocks) = (listed.clone(), blocks.clone());
-            let normal =
-                Normal::new(own, blocks, &seen, &forces_n, reference.clone(), self.nuisance, &read.slopes);
+            let normal = Normal::new(own, blocks, &seen, &forces_n, reference.clone(), self.nuisance, &read.slopes);
             let fit = self.joint(&limits).fit_all(&normal.alone(), &start)?;
             // The last readings have not settled: this fit is under them.
             if rounds_left == 0 {

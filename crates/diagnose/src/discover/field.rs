@@ -323,7 +323,8 @@ mod tests {
         let field = Field::of(&setting, &state).expect("a field");
         let shape = Curve::Spline { knots: vec![0.0, 0.05, 0.09, 0.11, 0.15, 0.25] };
         let memory = Recall::None;
-        let sentence = Sentence { driver: Driver::Contraction, memory, scale: Scale::Pressure, shape, seen: [0.0, 1.0] };
+        let sentence =
+            Sentence { driver: Driver::Contraction, memory, scale: Scale::Pressure, shape, seen: [0.0, 1.0] };
         let arguments = field.arguments(&sentence);
         let products = field.products(&arguments, sentence.scale, &sentence.shape).expect("products");
         let columns = |at: usize| {
