@@ -133,7 +133,7 @@ impl Nuisance {
             rows.extend_from_slice(&self.rows[at * before..(at + 1) * before]);
             rows.extend(columns.iter().map(|column| column[at]));
         }
-        self.behind(group, rows, scales, precision)
+        self.behind(group, rows, &scales, precision)
     }
 
     /// With `columns` as other forms of an effect that was named.
@@ -236,11 +236,11 @@ impl Nuisance {
                 row[before + column] += value * scales[column];
             }
         }
-        self.behind(group, rows, scales, LOOSE)
+        self.behind(group, rows, &scales, LOOSE)
     }
 
     /// `rows`, of which those of `self` are the first columns, with the `scales` and the `precision` of the others.
-    fn behind(&self, group: Group, rows: Vec<f64>, scales: Vec<f64>, precision: f64) -> Self {
+    fn behind(&self, group: Group, rows: Vec<f64>, scales: &[f64], precision: f64) -> Self {
         let n = self.n + scales.len();
         let mut groups = self.groups.clone();
         groups.push((group, self.n..n));
@@ -248,7 +248,7 @@ impl Nuisance {
             n,
             rows: Arc::new(rows),
             precision: self.precision.iter().copied().chain(std::iter::repeat_n(precision, scales.len())).collect(),
-            scales: [&self.scales[..], &scales].concat(),
+            scales: [&self.scales, scales].concat(),
             groups,
             products: Arc::default(),
         }

@@ -265,9 +265,9 @@ impl<'a> Setting<'a> {
     /// Instants that count, and those of each block that is kept apart.
     fn listed(&self) -> (Vec<usize>, Vec<Range<usize>>) {
         let counted = self.counted();
-        let all = [0..self.track.n()];
+        let all = 0..self.track.n();
         let mut listed: Vec<usize> = Vec::new();
-        let blocks = if self.apart { &self.track.blocks } else { &all[..] };
+        let blocks = if self.apart { &self.track.blocks } else { std::slice::from_ref(&all) };
         let ranges = blocks.iter().map(|block| {
             let first = listed.len();
             listed.extend(block.clone().filter(|&at| counted[at]));

@@ -135,7 +135,7 @@ impl<'a> Field<'a> {
     /// The same in proportion to each of `scales`.
     pub(super) fn products_by(&self, arguments: &[f64], scales: &[Scale], curve: &Curve) -> Vec<Option<Products>> {
         let k = curve.n_amplitudes();
-        let mut of_scales: Vec<(Vec<DMatrix<f64>>, Vec<DMatrix<f64>>)> = vec![(Vec::new(), Vec::new()); scales.len()];
+        let (mut crosses, mut owns) = (vec![Vec::new(); scales.len()], vec![Vec::new(); scales.len()]);
         for (instants, rows) in self.looked_at.iter().zip(&self.rows) {
             let mut columns = DMatrix::zeros(instants.len(), scales.len() * k);
             for (row, &at) in instants.iter().enumerate() {
@@ -146,13 +146,13 @@ impl<'a> Field<'a> {
                 });
             }
             let cross = rows * &columns;
-            for (place, (crosses, owns)) in of_scales.iter_mut().enumerate() {
+            for place in 0..scales.len() {
                 let columns = columns.columns(place * k, k);
-                crosses.push(cross.columns(place * k, k).into_owned());
-                owns.push(columns.transpose() * columns);
+                crosses[place].push(cross.columns(place * k, k).into_owned());
+                owns[place].push(columns.transpose() * columns);
             }
         }
-        of_scales.into_iter().map(|(cross, own)| self.of_size_one(cross, own)).collect()
+        crosses.into_iter().zip(owns).map(|(cross, own)| self.of_size_one(cross, own)).collect()
     }
 
     fn of_size_one(&self, mut cross: Vec<DMatrix<f64>>, mut own: Vec<DMatrix<f64>>) -> Option<Products> {
