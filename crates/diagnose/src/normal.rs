@@ -230,13 +230,6 @@ fn orthonormalize(rows: &mut DMatrix<f64>, triangle: &[f64], n: usize) {
     }
 }
 
-/// The symmetric matrix whose upper triangle `sums` holds, row by row.
-pub(crate) fn mirrored(sums: &[f64], width: usize) -> DMatrix<f64> {
-    let mut out = DMatrix::from_row_slice(width, width, sums);
-    out.fill_lower_triangle_with_upper_triangle();
-    out
-}
-
 impl Extended<'_> {
     /// Columns, added ones included.
     pub fn n_columns(&self) -> usize {

@@ -16,7 +16,6 @@ use rayon::prelude::*;
 use crate::coordinates::Coordinates;
 use crate::hypothesis::ranges;
 use crate::joint::HeldOut;
-use crate::normal::mirrored;
 use crate::state::{Setting, State};
 use crate::track::FOLDS;
 
@@ -396,7 +395,9 @@ impl ProjectedResidual {
                 }
             }
         }
-        mirrored(&sums, width)
+        let mut products = DMatrix::from_row_slice(width, width, &sums);
+        products.fill_lower_triangle_with_upper_triangle();
+        products
     }
 }
 
