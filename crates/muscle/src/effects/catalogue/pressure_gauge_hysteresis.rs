@@ -63,7 +63,8 @@ static PAGE: Page = Page {
         Symbol { symbol: "r", unit: "Pa", meaning: "pressure over which 63 % of it build up; 1 to 30 kPa" },
         Symbol { symbol: "z", unit: "1", meaning: "share of the full height, in [-1, 1]; 0 at the start" },
     ],
-    validity: "b small against the pressures used, where the force is linear in it; no dependence on the rate.",
+    validity: "b small against the pressures used, where the force is linear in it; no dependence on the rate. What sticks in \
+               the path of the load, such as a swivel, looks alike: a second gauge shows nothing of that.",
     source: "IEC 61298-2 for hysteresis of gauges; Al-Bender, Lampaert and Swevers (2005), IEEE Trans. Automatic Control \
              50(11), for the operator",
     signature: "The residual is odd in the direction of the pressure in isometric recordings, at every rate alike, in \
