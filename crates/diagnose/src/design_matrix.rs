@@ -89,17 +89,18 @@ impl Regressors<'_> {
         shift(seen, &self.track.instants[range.clone()], delays_s(guesses));
         let mut walk = Walk::of(self, recording, guesses, model);
         for (((now, row), here), at) in seen.iter_mut().zip(columns.chunks_exact_mut(width)).zip(base).zip(range) {
-            *here = walk.step(now, self.wants(at), row);
+            *here = walk.step(now, self.only.is_none_or(|only| only[at]), row);
         }
     }
 
-    /// Columns of `guesses` as [`DesignMatrix::columns`], of the instants alone that are wanted.
-    pub fn wanted_columns(&self, guesses: &[CandidateEffect], model: &ForceModel) -> Vec<f64> {
+    /// Columns of `guesses` as [`DesignMatrix::columns`]: those of the instants `listed`, which rise.
+    pub fn columns_at(&self, guesses: &[CandidateEffect], model: &ForceModel, listed: &[usize]) -> Vec<f64> {
         let width = N_COLUMNS + n_amplitudes(guesses);
         let delays_s = delays_s(guesses);
-        let mut columns = Vec::new();
-        let mut seen = Vec::new();
+        let mut columns = vec![0.0; listed.len() * width];
         let mut passing = vec![0.0; width];
+        let mut rows = columns.chunks_exact_mut(width).zip(listed).peekable();
+        let mut seen = Vec::new();
         for (recording, range) in self.track.recordings.iter().enumerate() {
             let instants = &self.track.instants[range.clone()];
             seen.clear();
@@ -107,20 +108,13 @@ impl Regressors<'_> {
             shift(&mut seen, instants, delays_s);
             let mut walk = Walk::of(self, recording, guesses, model);
             for (now, at) in seen.iter_mut().zip(range.clone()) {
-                if self.wants(at) {
-                    let first = columns.len();
-                    columns.resize(first + width, 0.0);
-                    walk.step(now, true, &mut columns[first..]);
-                } else {
-                    walk.step(now, false, &mut passing);
-                }
+                match rows.next_if(|(_, next)| **next == at) {
+                    Some((row, _)) => walk.step(now, true, row),
+                    None => walk.step(now, false, &mut passing),
+                };
             }
         }
         columns
-    }
-
-    fn wants(&self, at: usize) -> bool {
-        self.only.is_none_or(|only| only[at])
     }
 
     /// Columns of one more guess that only adds, over the moments of `sheet`, row-major: those of the instants `listed`, which rise.
@@ -285,7 +279,7 @@ mod tests {
     use crate::rehearsal::tests::Given;
 
     #[test]
-    fn wanted_columns_are_those_of_the_whole_matrix() {
+    fn columns_at_some_instants_are_those_of_the_whole_matrix() {
         let given = Given::of(&["isobaric-triangles", "multisine"], &[]);
         let guesses = [
             given.guess("channel-delay", &[0.05, 0.0]),
@@ -295,11 +289,11 @@ mod tests {
         let setting = given.setting().sampled();
         let ground = setting.ground();
         let sheet = ground.sheet(&guesses, &given.model);
-        let wanted = (0..given.track.n()).filter(|&at| given.track.sampled[at]);
-        let expected: Vec<f64> =
-            wanted.flat_map(|at| sheet.columns[at * sheet.width..(at + 1) * sheet.width].to_vec()).collect();
+        let listed: Vec<usize> = (0..given.track.n()).filter(|&at| given.track.sampled[at]).collect();
+        let of_listed = listed.iter().flat_map(|&at| sheet.columns[at * sheet.width..(at + 1) * sheet.width].to_vec());
+        let expected: Vec<f64> = of_listed.collect();
         assert!(expected.len() > 100 * sheet.width);
-        assert_eq!(ground.wanted_columns(&guesses, &given.model), expected);
+        assert_eq!(ground.columns_at(&guesses, &given.model, &listed), expected);
     }
 
     #[test]

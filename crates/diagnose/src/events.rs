@@ -29,7 +29,7 @@ pub(crate) fn is_even(setting: &Setting<'_>, state: &State, guess: &CandidateEff
     let columns = vec![uneven(&|moment| moment.pressure_pa), uneven(&|moment| moment.length_m)];
     let formed = setting.nuisance.with_forms(columns, &setting.track.counted);
     let beside = Setting { nuisance: &formed, ..*setting };
-    let guesses: Vec<CandidateEffect> = state.guesses.iter().chain([guess]).cloned().collect();
+    let guesses = state.guesses_with(guess);
     let left = (setting.left_near(&guesses, state), beside.left_near(&guesses, state));
     let (Some(even), Some(bent)) = left else { return false };
     even - bent <= UNEVEN * (state.fit.mean_square - even)

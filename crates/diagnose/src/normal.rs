@@ -96,7 +96,7 @@ impl Normal {
         for row in 0..n {
             triangle[row * n..(row + 1) * n].copy_from_slice(&total.row(row)[..n]);
         }
-        let known = nuisance.products(&listed, &ranges);
+        let known = nuisance.blocks(&listed, &ranges);
         let is_read_in_full = listed.iter().all(|&at| slopes[at] == 1.0);
         let blocks = of_blocks
             .into_par_iter()

@@ -27,7 +27,7 @@ use rayon::prelude::*;
 use crate::coordinates::Coordinates;
 use crate::structure;
 use crate::track::Track;
-use remembered::{Products, RememberedProducts};
+use remembered::{NuisanceBlock, RememberedBlocks};
 
 mod remembered;
 
@@ -62,8 +62,8 @@ pub struct Nuisance {
     scales: Vec<f64>,
     /// Which columns belong together.
     pub groups: Vec<(Group, Range<usize>)>,
-    /// Products of `rows`.
-    products: Arc<RememberedProducts>,
+    /// Blocks of `rows` that were asked for.
+    blocks: Arc<RememberedBlocks>,
 }
 
 /// No nuisances at all.
@@ -104,21 +104,25 @@ impl Nuisance {
     }
 
     /// Rows of the instants `listed`, in blocks of which each is a range of these, and their products.
-    pub(crate) fn products(&self, listed: &[usize], blocks: &[Range<usize>]) -> Arc<Vec<Products>> {
-        self.products.of(listed, blocks, || {
-            let product = |block: &Range<usize>| {
-                let rows = listed[block.clone()].iter().flat_map(|&at| self.row(at)).copied();
-                let rows = DMatrix::from_iterator(self.n, block.len(), rows);
-                Products { products: &rows * rows.transpose(), rows: Arc::new(rows) }
+    pub(crate) fn blocks(&self, listed: &[usize], ranges: &[Range<usize>]) -> Arc<Vec<NuisanceBlock>> {
+        self.blocks.of(listed, ranges, || {
+            let block = |range: &Range<usize>| {
+                let rows = listed[range.clone()].iter().flat_map(|&at| self.row(at)).copied();
+                let rows = DMatrix::from_iterator(self.n, range.len(), rows);
+                NuisanceBlock { products: &rows * rows.transpose(), rows: Arc::new(rows) }
             };
-            blocks.par_iter().map(product).collect()
+            ranges.par_iter().map(block).collect()
         })
     }
 
     /// What `coefficients` add at every one of `n_instants`, in N.
     pub fn force_n(&self, coefficients: &[f64], n_instants: usize) -> Vec<f64> {
-        let sum = |at| self.row(at).iter().zip(coefficients).map(|(column, value)| column * value).sum();
-        (0..n_instants).map(sum).collect()
+        (0..n_instants).map(|at| self.force_at_n(at, coefficients)).collect()
+    }
+
+    /// The same at instant `at` alone.
+    pub fn force_at_n(&self, at: usize, coefficients: &[f64]) -> f64 {
+        self.row(at).iter().zip(coefficients).map(|(column, value)| column * value).sum()
     }
 
     /// With `columns` (one vector each, over all instants) of `group` behind.
@@ -250,7 +254,7 @@ impl Nuisance {
             precision: self.precision.iter().copied().chain(std::iter::repeat_n(precision, scales.len())).collect(),
             scales: [&self.scales, scales].concat(),
             groups,
-            products: Arc::default(),
+            blocks: Arc::default(),
         }
     }
 
@@ -289,7 +293,7 @@ impl Nuisance {
             precision: of(&self.precision),
             scales: of(&self.scales),
             groups: renumbered.collect(),
-            products: Arc::default(),
+            blocks: Arc::default(),
         }
     }
 

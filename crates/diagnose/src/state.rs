@@ -106,6 +106,11 @@ impl State {
         self.guesses.iter().map(term).collect()
     }
 
+    /// Its effects and one more behind them.
+    pub fn guesses_with(&self, guess: &CandidateEffect) -> Vec<CandidateEffect> {
+        self.guesses.iter().chain([guess]).cloned().collect()
+    }
+
     /// Whether the muscle may hang slack in it.
     pub fn hangs_slack(&self) -> bool {
         self.guesses.iter().any(|guess| guess.effect.role() == Role::Reads)
@@ -252,9 +257,9 @@ impl<'a> Setting<'a> {
 
     /// Mean square of the fit of `guesses` and the base, starting from `state`.
     pub fn left_near(&self, guesses: &[CandidateEffect], state: &State) -> Option<f64> {
-        let ground = Regressors { only: Some(self.counted()), slopes: false, ..self.ground() };
-        let columns = ground.wanted_columns(guesses, &state.model);
         let (listed, blocks) = self.listed();
+        let ground = Regressors { slopes: false, ..self.ground() };
+        let columns = ground.columns_at(guesses, &state.model, &listed);
         let width = N_COLUMNS + n_amplitudes(guesses);
         let rows = Rows { listed, blocks, columns, width, events: events(guesses) };
         let near = &state.fit.x[..self.space.free.len()];
@@ -321,9 +326,8 @@ impl<'a> Setting<'a> {
             let forces_n = columns.chunks_exact(width).zip(&listed).map(|(row, &at)| {
                 let is_event = |column: &usize| events.contains(column);
                 let pulls = row.iter().zip(&fit.weights).enumerate().filter(|(column, _)| !is_event(column));
-                let nuisances = self.nuisance.row(at).iter().zip(&fit.nuisances);
                 let force_n: f64 = pulls.map(|(_, (column, weight))| column * weight).sum();
-                force_n + nuisances.map(|(column, value)| column * value).sum::<f64>()
+                force_n + self.nuisance.force_at_n(at, &fit.nuisances)
             });
             if read.move_to(&mut *memory, &listed, forces_n) * 2000 <= self.track.n() {
                 return Some((normal, fit, read));

@@ -235,17 +235,13 @@ pub fn mean_square(setting: &Setting<'_>, state: &State, guess: &CandidateEffect
     if guess.only_adds() {
         setting.fit_more(state, guess).map(|fit| fit.mean_square)
     } else {
-        setting.left_near(&joined(state, guess), state)
+        setting.left_near(&state.guesses_with(guess), state)
     }
 }
 
 /// `state` with one more guess.
 pub fn with(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> Option<State> {
-    setting.fit_near(joined(state, guess), state)
-}
-
-fn joined(state: &State, guess: &CandidateEffect) -> Vec<CandidateEffect> {
-    state.guesses.iter().chain([guess]).cloned().collect()
+    setting.fit_near(state.guesses_with(guess), state)
 }
 
 /// Better values of the shape parameters of `guess` on top of `state`, one after the other, `sweeps` times; and the mean

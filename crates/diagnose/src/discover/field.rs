@@ -183,8 +183,8 @@ impl<'a> Field<'a> {
         Tangent::of(&sum(&self.products, |block| times[block]), &self.ridges)
     }
 
-    /// The same for blocks drawn so many times each, over which the tangent space is `drawn`: fitted to what was drawn, judged on
-    /// what was not; blocks that were drawn leave nothing and count for nothing.
+    /// Mean squares of every block under a fit to blocks drawn so many `times` each, over which the tangent space is `drawn`; blocks
+    /// that were drawn leave nothing and count for nothing.
     pub(super) fn out_of_bag(&self, products: &Products, drawn: &Tangent, times: &[f64]) -> Option<HeldOut> {
         let coefficients = self.solve(drawn, products, |block| times[block])?;
         let judge = |block: usize| {
