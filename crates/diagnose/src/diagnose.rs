@@ -201,9 +201,6 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let nuisance = found.nuisance.clone();
     let setting = question.setting(&track, &nuisance);
     let (as_given, direction) = (model.force_model(), model.direction);
-    for prepared in &mut holdout {
-        prepared.begin(&as_given, direction.standstill)?;
-    }
     // At the rate of the recordings, as programs will evaluate what is written.
     let held_left = |model: &AugmentedModel| {
         Left::at_full_rate(&rig::beside(&rig, model), &holdout, direction).unwrap_or_else(Left::endless)

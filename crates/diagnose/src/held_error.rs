@@ -46,7 +46,9 @@ impl Left {
     pub(crate) fn at_full_rate(model: &AugmentedModel, held: &[Prepared], direction: Thresholds) -> Option<Self> {
         let model = model.elsewhere();
         let missed_n = |(index, prepared): (usize, &Prepared)| {
-            let trace = trace_augmented(prepared, &model, direction, index).ok()?;
+            let mut prepared = prepared.clone();
+            prepared.begin_with(&model, direction, index).ok()?;
+            let trace = trace_augmented(&prepared, &model, direction, index).ok()?;
             let samples = trace.force_n.iter().zip(&trace.model_n).zip(&trace.settled);
             let recorded = samples.filter(|((force_n, _), _)| force_n.is_finite());
             Some(recorded.map(|((force_n, model_n), &settled)| (force_n - model_n, settled)).collect())

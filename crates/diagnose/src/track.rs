@@ -3,7 +3,7 @@
 //! Channels are smooth and thinned to [`PERIOD_S`], which keeps what a muscle does and leaves out most of the white
 //! noise. Every recording is cut into blocks of consecutive instants: what is fitted on some blocks is judged on others.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
@@ -74,7 +74,10 @@ impl Track {
                     index,
                     stride,
                     Channels::Smooth,
-                    &mut |instant| instants.push(instant),
+                    &mut |instant| {
+                        instants.push(instant);
+                        ControlFlow::Continue(())
+                    },
                 )
                 .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
                 Ok(instants)

@@ -1,6 +1,7 @@
 //! A model along a recording, row by row.
 
 use std::io;
+use std::ops::ControlFlow;
 
 use pam_artifact::ModelArtifact;
 use pam_artifact::model::Domain;
@@ -64,7 +65,8 @@ pub fn walk_augmented(
     index: usize,
     visit: &mut dyn FnMut(&Instant, f64),
 ) -> io::Result<()> {
-    walk_moments(prepared, model, thresholds, index, &mut |instant, _, force_n| visit(instant, force_n))
+    let last = prepared.recording.samples.n_rows();
+    walk_rows(prepared, model, thresholds, index, last, &mut |instant, _, force_n| visit(instant, force_n))
 }
 
 /// As [`walk_augmented`], with the moment that the model's force was computed at as well: channels moved in time where the
@@ -77,6 +79,18 @@ pub fn walk_moments(
     model: &AugmentedModel,
     thresholds: Thresholds,
     index: usize,
+    visit: &mut dyn FnMut(&Instant, &Moment, f64),
+) -> io::Result<()> {
+    walk_rows(prepared, model, thresholds, index, prepared.recording.samples.n_rows(), visit)
+}
+
+/// As [`walk_moments`], over the first `n_rows` rows.
+fn walk_rows(
+    prepared: &Prepared,
+    model: &AugmentedModel,
+    thresholds: Thresholds,
+    index: usize,
+    n_rows: usize,
     visit: &mut dyn FnMut(&Instant, &Moment, f64),
 ) -> io::Result<()> {
     let Prepared { recording, direction, .. } = prepared;
@@ -95,7 +109,14 @@ pub fn walk_moments(
         (now, force_n)
     };
     let walk = |visit: &mut dyn FnMut(Instant)| {
-        walk(recording, direction, thresholds, model.base(), index, 1, Channels::Recorded, visit)
+        let mut visit = |instant: Instant| {
+            if instant.row >= n_rows {
+                return ControlFlow::Break(());
+            }
+            visit(instant);
+            ControlFlow::Continue(())
+        };
+        walk(recording, direction, thresholds, model.base(), index, 1, Channels::Recorded, &mut visit)
     };
     let delays_s = model.delays_s();
     if delays_s == [0.0; 2] {
@@ -172,8 +193,9 @@ pub fn outside(prepared: &Prepared, domain: &Domain) -> Vec<String> {
 }
 
 impl Prepared {
-    /// [`begin`](Self::begin) with all of an augmented `model`, in recording `index` of those that it was fitted to, or in another: where nothing moves,
-    /// every sample counts, and what effects do is not taken for friction.
+    /// Takes what friction was at the beginning of every segment from the force that was recorded there, as all of an augmented
+    /// `model` has it, in recording `index` of those that it was fitted to or in another: what effects do is not taken for friction.
+    /// Those samples stay unsettled, but where nothing moves at all.
     ///
     /// # Errors
     /// [`IdentifyError::Samples`] where samples cannot be read back.
@@ -183,13 +205,12 @@ impl Prepared {
         thresholds: Thresholds,
         index: usize,
     ) -> Result<(), IdentifyError> {
-        if self.direction.knows() {
-            return self.begin(model.base(), thresholds.standstill);
-        }
+        let unknown = self.direction.unknown_until().filter(|_| self.recording.samples.has_force());
+        let Some(n_rows) = unknown else { return Ok(()) };
         let mut forces_n = [Vec::new(), Vec::new()];
         for (forces_n, state) in forces_n.iter_mut().zip([0.0, 1.0]) {
             self.direction.assume(state);
-            walk_augmented(self, model, thresholds, index, &mut |_, model_n| forces_n.push(model_n))
+            walk_rows(self, model, thresholds, index, n_rows, &mut |_, _, model_n| forces_n.push(model_n))
                 .map_err(|reason| self.unreadable(reason))?;
         }
         let [neither_n, one_n] = &forces_n;
@@ -203,7 +224,7 @@ mod tests {
 
     use pam_muscle::effects::{Term, effect};
 
-    use crate::prepare::tests::{HELD, held, state};
+    use crate::prepare::tests::{HELD, held, moving, state};
     use crate::testing::model;
 
     /// The force that `model` has there in a state of friction.
@@ -224,5 +245,26 @@ mod tests {
         assert_eq!(state(&still), 0.5);
         still.begin_with(&AugmentedModel::from(model()), HELD, 0).unwrap();
         assert!(state(&still) > 0.5, "eq. 11 alone needs more: {}", state(&still));
+    }
+
+    #[test]
+    fn what_effects_add_before_the_first_motion_is_not_taken_for_friction() {
+        let stiff = Term::new(effect("threshold-pressure").unwrap(), vec![3e4], vec![]);
+        let augmented = AugmentedModel::new(model(), vec![stiff]);
+        let length_m = |row: u32| 0.25 - 1e-4 * f64::from(row.saturating_sub(200));
+        let columns: Vec<[f64; 3]> =
+            (0..300).map(|row| [0.01 * f64::from(row), 2e5 + 100.0 * f64::from(row), length_m(row)]).collect();
+        let column = |index: usize| columns.iter().map(|row| row[index]).collect::<Vec<f64>>();
+        let mut prepared = moving(&column(0), &column(1), &column(2), &[0.0; 300]);
+        let unknown = prepared.direction.unknown_until().expect("a rest");
+        prepared.direction.assume(-0.4);
+        let forces_n = augmented_forces_n(&prepared, &augmented, HELD).unwrap();
+        let begun = |model: &AugmentedModel| {
+            let mut prepared = moving(&column(0), &column(1), &column(2), &forces_n);
+            prepared.begin_with(model, HELD, 0).unwrap();
+            (0..unknown).map(|row| prepared.direction.sign(row)).collect::<Vec<f64>>()
+        };
+        assert_eq!(begun(&augmented), vec![-0.4; unknown]);
+        assert_ne!(begun(&AugmentedModel::from(model())), vec![-0.4; unknown], "eq. 11 alone takes the effect for friction");
     }
 }

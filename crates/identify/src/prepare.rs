@@ -209,7 +209,12 @@ pub(crate) mod tests {
     /// A muscle held at one length while its pressure rises and falls, with a force.
     pub(crate) fn held(force_n: &[f64]) -> Prepared {
         let time_s: Vec<f64> = (0..300).map(|row| 0.01 * f64::from(row)).collect();
-        let samples = Samples::from_columns(&time_s, &pressures_pa(), &LENGTH_M, force_n);
+        moving(&time_s, &pressures_pa(), &LENGTH_M, force_n)
+    }
+
+    /// A muscle with these columns, whose friction is held at standstill.
+    pub(crate) fn moving(time_s: &[f64], pressure_pa: &[f64], length_m: &[f64], force_n: &[f64]) -> Prepared {
+        let samples = Samples::from_columns(time_s, pressure_pa, length_m, force_n);
         direct(gate(vec![recording("held.csv", samples)]).unwrap(), HELD, Form::Corrected).unwrap().remove(0)
     }
 

@@ -33,9 +33,9 @@ const FEW_PA: [f64; 3] = [1e4, 4e4, 1.6e5];
 
 /// Travels over which friction may keep its sign after a reversal, and in which it may turn over after that, in m. What takes
 /// longer is pre-sliding, an effect with a name.
-const HELD_M: [f64; 6] = [0.0, 1e-5, 1.5e-5, 2e-5, 3e-5, 4.5e-5];
+const HELD_M: [f64; 5] = [0.0, 1e-5, 2e-5, 3e-5, 4.5e-5];
 /// See [`HELD_M`].
-const TURNS_M: [f64; 4] = [0.0, 2e-5, 5e-5, 1e-4];
+const TURNS_M: [f64; 6] = [0.0, 1e-5, 2e-5, 3.5e-5, 5e-5, 1e-4];
 
 /// Share of the play below which a finer one is another hypothesis.
 const FINER: f64 = 0.5;

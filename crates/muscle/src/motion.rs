@@ -4,6 +4,7 @@
 //! that never overshoot: see [`crate::smoothing`].
 
 use std::io;
+use std::ops::ControlFlow;
 
 use pam_recording::Recording;
 
@@ -59,8 +60,8 @@ pub enum Channels {
     Smooth,
 }
 
-/// Walks over every `stride`-th row of `recording`, in order, a segment at a time. `index` is the number of the recording;
-/// `base` knows the muscle.
+/// Walks over every `stride`-th row of `recording`, in order, a segment at a time, until `visit` breaks off. `index` is the number of
+/// the recording; `base` knows the muscle.
 ///
 /// # Errors
 /// Where the samples cannot be read back.
@@ -73,7 +74,7 @@ pub fn walk(
     index: usize,
     stride: usize,
     channels: Channels,
-    visit: &mut dyn FnMut(Instant),
+    visit: &mut dyn FnMut(Instant) -> ControlFlow<()>,
 ) -> io::Result<()> {
     let rest_length_m = base.muscle().rest_length_m;
     let rest_slide_m_per_pa = base.slide_m_per_pa(rest_length_m);
@@ -131,7 +132,7 @@ pub fn walk(
             let slide_m = slide.follow(shortened_m + by_pressure_m, slide_speed_m_per_s);
             let rest_slide_m =
                 rest_slide.follow(by_pressure_m, if resting { slide_m_per_pa * sharp_pressure.slope } else { 0.0 });
-            visit(Instant {
+            let visited = visit(Instant {
                 row,
                 moment: Moment {
                     recording: index,
@@ -162,6 +163,9 @@ pub fn walk(
                     direction.is_settled(row)
                 },
             });
+            if visited.is_break() {
+                return Ok(());
+            }
             at += stride;
         }
     }
@@ -354,8 +358,11 @@ mod tests {
         let recording = read_recording(&path, &ReadOptions::default()).unwrap();
         let direction = Direction::of(&recording, THRESHOLDS, Driver::Motion).unwrap();
         let mut instants = Vec::new();
-        walk(&recording, &direction, THRESHOLDS, &base(), 0, stride, channels, &mut |instant| instants.push(instant))
-            .unwrap();
+        let mut visit = |instant| {
+            instants.push(instant);
+            ControlFlow::Continue(())
+        };
+        walk(&recording, &direction, THRESHOLDS, &base(), 0, stride, channels, &mut visit).unwrap();
         instants
     }
 

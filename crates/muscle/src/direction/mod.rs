@@ -166,6 +166,11 @@ impl Direction {
         self.states.iter_mut().zip(&self.known).filter(|(_, known)| !**known).for_each(|(at, _)| *at = hundredths);
     }
 
+    /// Number of rows up to the last of which nothing is known; none where all are known.
+    pub fn unknown_until(&self) -> Option<usize> {
+        self.known.iter().rposition(|known| !known).map(|row| row + 1)
+    }
+
     /// Whether anything moves.
     pub fn knows(&self) -> bool {
         self.known.contains(&true)

@@ -86,9 +86,7 @@ pub(super) fn pushed(
 ) -> Option<Range<usize>> {
     let still = &stills[index];
     let n = still.len();
-    let middle = &contraction[still.start + n / 4..still.end - n / 4];
-    let level = middle.iter().sum::<f64>() / middle.len() as f64;
-    let spread = (middle.iter().map(|value| (value - level).powi(2)).sum::<f64>() / middle.len() as f64).sqrt();
+    let (level, spread) = rests_within(contraction, still);
     let moves_m = MOVES * noise_m.max(spread);
     let after_motion = still.start > 0 && (index == 0 || stills[index - 1].end < still.start);
     let before_motion =
@@ -103,6 +101,15 @@ pub(super) fn pushed(
         rest.end -= moving_rows(n, moves_m, threshold_pa, &|at| (deviation_m(last - at), pressure[last - at]));
     }
     (rest.start < rest.end && range(&pressure[rest.clone()]) > threshold_pa).then_some(rest)
+}
+
+/// Mean and deviation of `values` in the middle half of a standstill.
+pub(super) fn rests_within(values: &[f64], still: &Range<usize>) -> (f64, f64) {
+    let margin = still.len() / 4;
+    let middle = &values[still.start + margin..still.end - margin];
+    let n = middle.len() as f64;
+    let level = middle.iter().sum::<f64>() / n;
+    (level, (middle.iter().map(|value| (value - level).powi(2)).sum::<f64>() / n).sqrt())
 }
 
 /// How many of `n` rows of a standstill, counted inwards from one of its ends, belong to the motion beyond that end. `row` gives

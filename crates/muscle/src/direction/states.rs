@@ -182,7 +182,7 @@ impl<'a> Stretch<'a> {
         let paths = || self.paths.lock().unwrap_or_else(PoisonError::into_inner);
         let known = paths().iter().find(|(of, _)| *of == turns).map(|(_, path)| Arc::clone(path));
         Some(known.unwrap_or_else(|| {
-            let path = Path::of(self.time_s, self.period_s, &self.shortening, self.thresholds, &turns);
+            let path = Path::of(self.time_s, self.period_s, &self.shortening, self.thresholds, &turns, &self.resting);
             let path = Arc::new(path);
             paths().push((turns, Arc::clone(&path)));
             path

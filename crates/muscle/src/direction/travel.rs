@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::rest::rests_within;
 use super::states::{Bounds, State};
 use super::thresholds::Thresholds;
 use super::turn::{NOISE, is_across};
@@ -69,6 +70,8 @@ impl Path {
     /// Deviations of the noise of a path that rests within. With half of it eq. 11 leaves as much of other worlds, to half a percent, and
     /// 1 % more of held-out recordings of the bench that somebody else wrote.
     const RESTS: f64 = 2.0;
+    /// Deviations by which it came from elsewhere, twice as long before its farthest point as it takes to leave it.
+    const CAME: f64 = 4.0;
 
     /// `shortening` as parabolas describe it, over windows as long as its noise needs and as short as its `turns` do: one that goes
     /// across a turn that it does not describe, such as a corner, has its vertex elsewhere.
@@ -78,6 +81,7 @@ impl Path {
         shortening: &[f64],
         thresholds: Thresholds,
         turns: &[usize],
+        resting: &[Range<usize>],
     ) -> Self {
         let n_rows = shortening.len();
         let noise_m = NOISE * thresholds.length_m;
@@ -106,15 +110,35 @@ impl Path {
             let rows = before.map_or(0, |bend| bend.row)..after.map_or(n_rows, |bend| bend.row);
             travels_m.extend(rows.map(|row| sliding.parabola(row - from).value));
         }
-        Self { travels_m, noise_m: 1.5 * noise_m / ((2 * longest + 1) as f64).sqrt() }
+        let white_m = 1.5 * noise_m / ((2 * longest + 1) as f64).sqrt();
+        let noise_m = white_m.max(wanders_m(&travels_m, resting));
+        Self { travels_m, noise_m }
     }
 
-    /// The last of `rows` at which it is still where it is farthest from going the way of `way`: of a rest before a motion, its end.
-    fn leaves(&self, rows: Range<usize>, way: f64) -> Option<usize> {
+    /// Where within `rows` it leaves its farthest point to go the way of `way`, and the travel there.
+    fn leaves(&self, rows: Range<usize>, way: f64) -> Option<(usize, f64)> {
         let ahead_m = |row: usize| way * self.travels_m[row];
-        let farthest_m = rows.clone().map(ahead_m).min_by(f64::total_cmp)?;
-        rows.rev().find(|&row| ahead_m(row) <= farthest_m + Self::RESTS * self.noise_m)
+        let farthest = rows.clone().min_by(|&one, &other| ahead_m(one).total_cmp(&ahead_m(other)))?;
+        let within = |&row: &usize| ahead_m(row) <= ahead_m(farthest) + Self::RESTS * self.noise_m;
+        let last = rows.clone().rev().find(within)?;
+        // A path that came from there as it goes has its vertex at the farthest point; one that rested leaves at the end of the rest,
+        // where the farthest point is any peak of the noise.
+        let took = last - farthest;
+        let before = farthest.checked_sub(2 * took).filter(|before| took > 0 && rows.contains(before));
+        if before.is_some_and(|before| ahead_m(before) - ahead_m(farthest) > Self::CAME * self.noise_m) {
+            return Some((farthest, self.travels_m[farthest]));
+        }
+        let rested = &self.travels_m[farthest..=last];
+        Some((last, rested.iter().sum::<f64>() / rested.len() as f64))
     }
+}
+
+/// Deviation of `travels_m` in the middle half of every standstill, the middle one of all; zero without any. White noise is averaged away
+/// along a path, other noise is not.
+fn wanders_m(travels_m: &[f64], resting: &[Range<usize>]) -> f64 {
+    let mut deviations_m: Vec<f64> = resting.iter().map(|still| rests_within(travels_m, still).1).collect();
+    deviations_m.sort_by(f64::total_cmp);
+    deviations_m.get(deviations_m.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Lets the states follow the travel along `path` after every turn, as `thresholds` say; over the stretches `pushed` the
@@ -132,8 +156,8 @@ pub(super) fn turn_over(
     pushed.iter().for_each(|still| is_pushed[still.clone()].fill(true));
     let mut state = carried.is_known().then(|| carried.middle());
     let mut sign = carried.sign();
-    // The last turn, the state there, and the farthest travel from it.
-    let (mut turn, mut at_turn, mut farthest_m) = (0, state, 0.0);
+    // The last turn, where on the path, the state there, and the farthest travel from it.
+    let (mut turn, mut from_m, mut at_turn, mut farthest_m) = (0, path.travels_m[0], state, 0.0);
     // Where the sign changed at one row and the path says another, nobody knows the direction between the two.
     let doubt = |rows: Range<usize>, states: &mut [State]| {
         states[rows].iter_mut().for_each(|state| state.is_settled = false);
@@ -154,7 +178,9 @@ pub(super) fn turn_over(
         if ways[row] != sign {
             // No farther than the turns on either side.
             let next = row + ways[row..].iter().take(reach).take_while(|other| **other == ways[row]).count();
-            let around = path.leaves(row.saturating_sub(reach).max(turn)..next, way).unwrap_or(row);
+            let (around, left_m) = path
+                .leaves(row.saturating_sub(reach).max(turn)..next, way)
+                .unwrap_or_else(|| (row, path.travels_m[row]));
             // What came before the turn still goes the other way, what lies between it and here came this way already.
             let free = |rows: Range<usize>| rows.into_iter().all(|row| !is_pushed[row] && ways[row] != 0);
             if sign != 0 && around > row && free(row..around) {
@@ -168,10 +194,11 @@ pub(super) fn turn_over(
             ways[from..row].fill(sign);
             doubt(from..row, states);
             (turn, farthest_m) = (around.min(row), 0.0);
+            from_m = if around > row { path.travels_m[row] } else { left_m };
             at_turn = if 0 < from && from < row { Some(states[from].bounds.middle()) } else { state };
             row = from;
         }
-        farthest_m = f64::max(farthest_m, way * (path.travels_m[row] - path.travels_m[turn]));
+        farthest_m = f64::max(farthest_m, way * (path.travels_m[row] - from_m));
         let turned_m = (farthest_m - thresholds.held_m).max(0.0);
         // Nothing is known of what came before the first motion.
         let turned = match at_turn {
@@ -205,7 +232,7 @@ mod tests {
         let time_s: Vec<f64> = (0..200).map(|row| PERIOD_S * f64::from(row)).collect();
         let noise_m = |row: usize| 40e-6 * ((row * 7919 % 1013) as f64 / 1013.0 - 0.5);
         let recorded: Vec<f64> = time_s.iter().enumerate().map(|(row, &t)| truth(t) + noise_m(row)).collect();
-        let path = Path::of(&time_s, PERIOD_S, &recorded, thresholds(20e-6), turns);
+        let path = Path::of(&time_s, PERIOD_S, &recorded, thresholds(20e-6), turns, &[]);
         path.travels_m.iter().zip(&time_s).map(|(path, &t)| (path - truth(t)).abs()).fold(0.0, f64::max)
     }
 
@@ -241,6 +268,31 @@ mod tests {
         turn_over(&Path { travels_m: path, noise_m: 1e-9 }, slow, 40, Bounds::at(ways[0]), &[], &mut states);
         let off = states.iter().zip(&ways).filter(|(state, way)| state.bounds.middle() * **way < 0.0).count();
         assert!(off <= ways.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count(), "{off}");
+    }
+
+    /// Where the path of `truth`, recorded with 20 µm of noise, leaves to rise around row `turn`, and what it has travelled there.
+    fn leaves(truth: &dyn Fn(f64) -> f64, turn: usize, resting: &[Range<usize>]) -> (usize, f64) {
+        let time_s: Vec<f64> = (0..200).map(|row| PERIOD_S * f64::from(row)).collect();
+        let noise_m = |row: usize| 40e-6 * ((row * 7919 % 1013) as f64 / 1013.0 - 0.5);
+        let recorded: Vec<f64> = time_s.iter().enumerate().map(|(row, &t)| truth(t) + noise_m(row)).collect();
+        Path::of(&time_s, PERIOD_S, &recorded, thresholds(12e-6), &[turn], resting).leaves(50..150, 1.0).unwrap()
+    }
+
+    #[test]
+    fn a_turn_is_at_its_vertex_and_a_motion_begins_where_a_rest_ends() {
+        // Both leave 8 µm within the same time of the turn; only one has come from elsewhere.
+        let (row, travel_m) = leaves(&|t| 4e-3 * (t - 0.5).powi(2), 100, &[]);
+        assert!(row.abs_diff(100) <= 4 && travel_m.abs() < 6e-6, "{row}, {travel_m}");
+        let (row, travel_m) = leaves(&|t| 4e-3 * (t - 0.5).max(0.0).powi(2), 100, &[]);
+        assert!((100..125).contains(&row) && travel_m.abs() < 6e-6, "{row}, {travel_m}");
+    }
+
+    #[test]
+    fn a_path_that_wanders_while_it_rests_leaves_where_it_goes() {
+        // Slow noise that no average takes away.
+        let wandering = |t: f64| 30e-6 * (20.0 * t - 5.7).sin() + 20e-3 * (t - 0.6).max(0.0);
+        let (white, known) = (leaves(&wandering, 120, &[]), leaves(&wandering, 120, &[0..120]));
+        assert!(white.0 < 115 && known.0.abs_diff(120) <= 2, "{white:?}, {known:?}");
     }
 
     #[test]
