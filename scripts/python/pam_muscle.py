@@ -867,8 +867,22 @@ class Muscle:
 
     def moments(self, recording):
         """Every row of a recording with the kinematics that pam-predict gives it."""
-        directions = directions_of(recording, self)
-        moments = walk(recording, directions, self)
+        directions, unknown = directions_of(recording, self)
+        if unknown and recording.force_n is not None:
+            # What effects do is not taken for friction: all of the model is asked, without friction and with all of it.
+            forces_n = []
+            for state in (0.0, 1.0):
+                assumed = directions.copy()
+                for rows in unknown:
+                    assumed[rows] = state
+                forces_n.append(self.along(self.moving(recording, assumed, unknown[-1].stop), True))
+            for rows in unknown:
+                directions[rows] = beginning(recording, rows, law_of(self), *(force_n[rows] for force_n in forces_n))
+        return self.moving(recording, directions, len(directions))
+
+    def moving(self, recording, directions, n_rows):
+        """The first rows of a recording with these directions, as moments."""
+        moments = walk(recording, directions, self, n_rows)
         delays_s = [effect.delays_s for effect in Memory(self).effects if isinstance(effect, ChannelDelay)]
         return shift(moments, *(sum(delays) for delays in zip(*delays_s))) if delays_s else moments
 
@@ -944,13 +958,19 @@ UNKNOWN = (-1.0, 1.0)  # between what the state of friction lies
 STRETCH_ROWS = 1 << 18
 
 
-def directions_of(recording, muscle):
-    """State of friction at every row, in [-1, 1]: +1 after contracting, -1 after extending, 0 where it is not known."""
+def law_of(muscle):
+    """How the direction is found for a muscle."""
     thresholds = muscle.model["direction"]
     standstill = thresholds.get("standstill", {"slides": {"over_pa": 0.0}})
     slides = {"over_pa": None} if standstill == "held" else standstill["slides"]
     travels_m = thresholds.get("held_m", 0.0), thresholds.get("turn_m", 0.0)
-    law = Law(thresholds["length_m"], thresholds["pressure_pa"], *travels_m, slides["over_pa"], slides.get("share", 1.0))
+    return Law(thresholds["length_m"], thresholds["pressure_pa"], *travels_m, slides["over_pa"], slides.get("share", 1.0))
+
+
+def directions_of(recording, muscle):
+    """State of friction at every row, in [-1, 1]: +1 after contracting, -1 after extending, 0 where it is not known; and the slices of
+    rows before the first motion of a segment, where it is not."""
+    law = law_of(muscle)
     found, unknown = np.zeros(len(recording.time_s)), []
     for segment in recording.segments():
         carried, known = UNKNOWN, []
@@ -962,13 +982,9 @@ def directions_of(recording, muscle):
             found[rows] = [hundredths(0.5 * (low + high)) for low, high in bounds]
             known += [is_known(bound) for bound in bounds]
         first = known.index(True) if True in known else len(known)
-        unknown.append(slice(segment.start, segment.start + first))
-    # Where nothing moves from beginning to end, nothing is unknown: friction is zero there.
-    moves = sum(rows.stop - rows.start for rows in unknown) < len(found)
-    for rows in unknown if moves and recording.force_n is not None else []:
-        if rows.start < rows.stop:
-            found[rows] = beginning(recording, rows, law, muscle.eq11, found[rows])
-    return found
+        if first > 0:
+            unknown.append(slice(segment.start, segment.start + first))
+    return found, unknown
 
 
 @dataclasses.dataclass
@@ -997,17 +1013,16 @@ def sign_of(bound):
     return (1 if 0.5 * (bound[0] + bound[1]) >= 0.0 else -1) if is_known(bound) else 0
 
 
-def beginning(recording, rows, law, eq11, found):
-    """Friction before the first motion of a segment: of all beginnings the one that comes nearest to the force measured there."""
-    pressure_pa, length_m = recording.pressure_pa[rows], recording.length_m[rows]
-    neither_n = eq11.force_n(pressure_pa, length_m, 0.0)
-    without_n, with_n = recording.force_n[rows] - neither_n, eq11.force_n(pressure_pa, length_m, 1.0) - neither_n
-    smooth_pa = moving_average(pressure_pa, 2)
-    best, least = found, math.inf
+def beginning(recording, rows, law, neither_n, one_n):
+    """Friction before the first motion of a segment: of all beginnings the one that comes nearest to the force measured there, where
+    the model has these without friction and with all of it."""
+    without_n, with_n = recording.force_n[rows] - neither_n, one_n - neither_n
+    smooth_pa = moving_average(recording.pressure_pa[rows], 2)
+    best, least = np.zeros(len(smooth_pa)), math.inf
     for index in range(-20, 21):
         state = index / 20
-        middles = np.full(len(pressure_pa), state)
-        if law.over_pa is not None and law.over_pa > 0.0:
+        middles = np.full(len(smooth_pa), state)
+        if law.over_pa is not None and (law.over_pa > 0.0 or law.share < 1.0):
             middles = np.array([0.5 * (low + high) for low, high in slide_bounds(smooth_pa, law, (state, state))])
         left = np.cumsum((without_n - middles * with_n) ** 2)[-1]
         if left < least:
@@ -1031,6 +1046,7 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     play(contraction, shortening, law.length_m, half, sign_of(carried), marks, 0)
     pressure = moving_average(pressure_pa, half)
     stills = standstills(time_s, contraction, law.length_m)
+    stills = [still for still in stills if not never_rests(shortening[still.start : still.stop], law.length_m)]
     noise_m = NOISE * law.length_m / math.sqrt(2 * half + 1)
     pushed = [pushed_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
     pushed = [rows for rows in pushed if rows is not None]
@@ -1055,9 +1071,14 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     if law.held_m > 0.0 or law.turn_m > 0.0:
         # A parabola over n values leaves 2.25 / n of the variance in the middle one.
         values = 2.25 * (NOISE * law.length_m / 4e-6) ** 2
-        path = Window(time_s, min(0.5 * values * period_s, 0.15)).parabolas(shortening)[0]
+        half = Window(time_s, min(0.5 * values * period_s, 0.15)).half
+        slid = [] if law.over_pa is None else pushed
+        path = path_of(time_s, shortening, half, NOISE * law.length_m, turns_of(bounds, pushed))
+        white_m = 1.5 * NOISE * law.length_m / math.sqrt(2 * half + 1)
+        wanders_m = sorted(rests_within(path, still)[1] for still in stills)
+        path_noise_m = max(white_m, wanders_m[len(wanders_m) // 2] if wanders_m else 0.0)
         reach = min(max(int(math.floor(0.25 / period_s + 0.5)), 2 * half), 500)
-        turn_over(path.tolist(), law, reach, carried, [] if law.over_pa is None else pushed, bounds)
+        turn_over(path.tolist(), path_noise_m, law, reach, carried, slid, bounds)
     return bounds
 
 
@@ -1091,9 +1112,81 @@ def slide_bounds(pressure, law, before):
     return bounds
 
 
-def turn_over(path, law, reach, carried, pushed, bounds):
+def turns_of(bounds, pushed):
+    """Rows at which the length turns as the signs say, not where the pressure turns friction over."""
+    ways = [sign_of(bound) for bound in bounds]
+    turns = [row for row in range(1, len(ways)) if ways[row] != ways[row - 1]]
+    return [row for row in turns if not any(still.start <= row <= still.stop for still in pushed)]
+
+
+def path_of(time_s, shortening, longest, noise_m, turns):
+    """The shortening as parabolas describe it, over windows as long as its noise needs and as short as its turns do: one that goes across
+    a turn that it does not describe, such as a corner, has its vertex elsewhere."""
+    n_rows = len(shortening)
+    period_s = (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1)
+    bends = [(turn, *bend_at(shortening, turn, longest, noise_m)) for turn in turns]
+    ends, path, start = [n_rows], [], 0
+    for row, _, is_split in reversed(bends):
+        ends.insert(0, row if is_split else ends[0])
+    for index, end in enumerate(ends):
+        around = bends[max(index - 1, 0) : index + 1]
+        if index > 0 and bends[index - 1][2]:
+            start = bends[index - 1][0]
+        piece = shortening[start:end]
+        half = min(min([longest, *(bend[1] for bend in around)]), (max(len(piece), 1) - 1) // 2)
+        first, last = bends[index - 1][0] if index > 0 else 0, bends[index][0] if index < len(bends) else n_rows
+        smooth = Window(time_s[start:end], half * period_s).parabolas(piece)[0] if len(piece) else piece
+        path.append(smooth[first - start : last - start])
+    return np.concatenate(path)
+
+
+def bend_at(shortening, row, half, noise_m):
+    """Rows to either side of the longest parabola that describes the length around a turn, and whether it goes up to the turn from
+    both sides, as at a corner."""
+
+    def is_described(start, at, stop):
+        stop = min(stop, len(shortening))
+        return stop - start < 8 or not is_across(shortening[start:stop], at - start, noise_m)
+
+    while True:
+        before, after = max(row - half, 0), row + half + 1
+        is_smooth = is_described(before, row, after)
+        is_split = (not is_smooth and is_described(max(row - 2 * half - 1, 0), before, row)
+                    and is_described(row, min(after, len(shortening)), row + 2 * half + 1))  # fmt: skip
+        if is_smooth or is_split or half <= 4:
+            return half, is_split
+        half = max(half // 2, 4)
+
+
+def is_across(values, at, noise_m):
+    """Whether two parabolas, up to value `at` and from there on, surely leave less than one."""
+
+    def left(values):
+        along = np.arange(len(values), dtype=float) - 0.5 * len(values)
+        found = least_squares(np.stack([np.ones_like(along), along, along**2], 1), values - values[0])
+        return None if found is None else found[0]
+
+    before, after = values[:at], values[at:]
+    if len(before) < 4 or len(after) < 4:
+        return True
+    one, parts = left(values), (left(before), left(after))
+    return one is None or None in parts or one - sum(parts) > (4.0 * noise_m) ** 2
+
+
+def leaves(path, noise_m, rows, way):
+    """Row at which a path leaves its farthest point to go a way, and where it is there: at its vertex, or at the end of a rest."""
+    ahead_m = way * np.array(path[rows.start : rows.stop])
+    farthest = int(np.argmin(ahead_m))
+    last = int(np.flatnonzero(ahead_m <= ahead_m[farthest] + 2.0 * noise_m)[-1])
+    before = farthest - 2 * (last - farthest)
+    if last > farthest and before >= 0 and ahead_m[before] - ahead_m[farthest] > 4.0 * noise_m:
+        return rows.start + farthest, way * ahead_m[farthest]
+    return rows.start + last, way * ahead_m[farthest : last + 1].mean()
+
+
+def turn_over(path, noise_m, law, reach, carried, pushed, bounds):
     """Lets the states follow the travel along `path` after every turn; over the ranges `pushed` the pressure moves them. A turn is
-    where the path is farthest, within `reach` rows of where the sign changes."""
+    where the path leaves its farthest point, within `reach` rows of where the sign changes."""
     ways, is_pushed = [sign_of(bound) for bound in bounds], [False] * len(bounds)
     for still in pushed:
         is_pushed[still.start : still.stop] = [True] * len(still)
@@ -1102,7 +1195,7 @@ def turn_over(path, law, reach, carried, pushed, bounds):
         return all(not is_pushed[row] and ways[row] != 0 for row in range(start, stop))
 
     state = 0.5 * (carried[0] + carried[1]) if is_known(carried) else None
-    way_before, turn, at_turn, farthest_m, row = sign_of(carried), 0, state, 0.0, 0
+    way_before, turn, from_m, at_turn, farthest_m, row = sign_of(carried), 0, path[0], state, 0.0, 0
     while row < len(bounds):
         if not is_known(bounds[row]):
             row += 1
@@ -1113,8 +1206,11 @@ def turn_over(path, law, reach, carried, pushed, bounds):
             continue
         way = float(ways[row])
         if ways[row] != way_before:
-            first = max(row - reach, 0)
-            around = first + int(np.argmin(way * np.array(path[first : min(len(path), row + reach)])))
+            # No farther than the turns on either side.
+            stop = row
+            while stop < min(len(path), row + reach) and ways[stop] == ways[row]:
+                stop += 1
+            around, left_m = leaves(path, noise_m, range(max(row - reach, turn, 0), stop), way)
             # What came before the turn still goes the other way, what lies between it and here came this way already.
             if way_before != 0 and around > row and free(row, around):
                 ways[row:around] = [way_before] * (around - row)
@@ -1124,9 +1220,10 @@ def turn_over(path, law, reach, carried, pushed, bounds):
             way_before = ways[row]
             ways[start:row] = [way_before] * (row - start)
             turn, farthest_m = min(around, row), 0.0
+            from_m = path[row] if around > row else left_m
             at_turn = 0.5 * (bounds[start][0] + bounds[start][1]) if 0 < start < row else state
             row = start
-        farthest_m = max(farthest_m, way * (path[row] - path[turn]))
+        farthest_m = max(farthest_m, way * (path[row] - from_m))
         turned_m = max(farthest_m - law.held_m, 0.0)
         if at_turn is not None and turned_m == 0.0:
             state = at_turn
@@ -1171,13 +1268,34 @@ def within(time_s, values, threshold, least_s):
     return found
 
 
+def never_rests(values, threshold):
+    """Whether a parabola, a turn or a crawl, describes values better than a level with a motion before and after it."""
+    along = np.linspace(-1.0, 1.0, len(values))
+    bent = least_squares(np.stack([np.ones_like(along), along, along**2], 1), values - values[0])
+    ends = np.minimum(along + 0.5, 0.0), np.maximum(along - 0.5, 0.0)
+    level = least_squares(np.stack([np.ones_like(along), *ends], 1), values - values[0])
+    if bent is None or level is None:
+        return False
+    left, (c0, c1, c2) = bent
+    vertex = -0.5 * c1 / c2 if c2 != 0.0 else 0.0
+    reached = [c0 + c1 * u + c2 * u * u for u in (-1.0, min(max(vertex, -1.0), 1.0), 1.0)]
+    return level[0] - left > (3.0 * NOISE * threshold) ** 2 and max(reached) - min(reached) > 0.5 * threshold
+
+
+def rests_within(values, still):
+    """Mean and deviation in the middle half of a standstill."""
+    n = len(still)
+    middle = values[still.start + n // 4 : still.stop - n // 4]
+    level = middle.sum() / len(middle)
+    return level, math.sqrt(((middle - level) ** 2).sum() / len(middle))
+
+
 def pushed_rows(stills, index, contraction, noise_m, pressure, threshold_pa):
     """Where in a standstill the pressure moves while the length rests; None where it does not. The end of a motion and the
     beginning of the next are left to the length."""
     still, n = stills[index], len(stills[index])
-    middle = contraction[still.start + n // 4 : still.stop - n // 4]
-    level = middle.sum() / len(middle)
-    moves_m = 3.0 * max(noise_m, math.sqrt(((middle - level) ** 2).sum() / len(middle)))
+    level, spread_m = rests_within(contraction, still)
+    moves_m = 3.0 * max(noise_m, spread_m)
     after_motion = still.start > 0 and (index == 0 or stills[index - 1].stop < still.start)
     following = stills[index + 1].start if index + 1 < len(stills) else math.inf
     before_motion = still.stop < len(contraction) and following > still.stop
@@ -1505,11 +1623,13 @@ class BacklashFilter:
         return self.position
 
 
-def walk(recording, directions, muscle):
-    """Every row of a recording as a moment."""
+def walk(recording, directions, muscle, n_rows):
+    """The first rows of a recording as moments."""
     moments, origin_s = [], recording.time_s[0]
     for segment in recording.segments():
-        moments += walk_segment(recording, slice(segment.start, segment.stop), directions, muscle, origin_s)
+        if segment.start < n_rows:
+            rows = slice(segment.start, segment.stop)
+            moments += walk_segment(recording, rows, directions, muscle, origin_s, n_rows - segment.start)
     return moments
 
 
@@ -1524,8 +1644,8 @@ class Channel:
         self.curvature = near.parabolas(self.rest)[2] + self.knees.bends(len(values))
 
 
-def walk_segment(recording, rows, directions, muscle, origin_s):
-    """Moments of rows without a gap."""
+def walk_segment(recording, rows, directions, muscle, origin_s, most):
+    """Moments of rows without a gap, so many at most."""
     eq11, thresholds = muscle.eq11, muscle.model["direction"]
     time_s = recording.time_s[rows]
     near, window = Window(time_s, 0.02), Window(time_s, 0.04)
@@ -1550,7 +1670,7 @@ def walk_segment(recording, rows, directions, muscle, origin_s):
     speeds = np.where(resting, slide_m_per_pa * pressure.slope, -length.slope)
     steps_s = np.diff(time_s, prepend=time_s[0])
     moments = []
-    for at in range(len(time_s)):
+    for at in range(min(len(time_s), most)):
         moments.append(Moment(
             time_s=float(time_s[at] - origin_s),
             step_s=float(steps_s[at]),

@@ -265,6 +265,10 @@ mod tests {
             (0..unknown).map(|row| prepared.direction.sign(row)).collect::<Vec<f64>>()
         };
         assert_eq!(begun(&augmented), vec![-0.4; unknown]);
-        assert_ne!(begun(&AugmentedModel::from(model())), vec![-0.4; unknown], "eq. 11 alone takes the effect for friction");
+        assert_ne!(
+            begun(&AugmentedModel::from(model())),
+            vec![-0.4; unknown],
+            "eq. 11 alone takes the effect for friction"
+        );
     }
 }

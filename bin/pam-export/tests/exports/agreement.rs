@@ -214,6 +214,17 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
         ));
         logs.push((name.to_owned(), format!("{log}.csv")));
     }
+    // A length with noise, along which turns are vertices, corners and the ends of rests.
+    let noisy = with_play(&desk.read("presliding_hysteresis.json"), 2e-4);
+    for log in ["length-steps", "minor-loops", "isometric-ramps"] {
+        let name = format!("noisy-{log}");
+        desk.write(&format!("{name}.csv"), &with_noise(&desk.read(&format!("{log}.csv")), 0.08));
+        desk.write(&format!("{name}.json"), &noisy);
+        desk.exported(&format!(
+            "{name}.csv --model {name}.json --vectors {name}.vectors.csv --accept-implausible --quiet"
+        ));
+        logs.push((name.clone(), format!("{name}.csv")));
+    }
     // What acts in the fitted recordings alone is nowhere.
     desk.write("fitted.json", &kept_to_fitted(&desk.read("presliding_hysteresis.json"), "presliding-hysteresis"));
     desk.exported("multisine.csv --model fitted.json --vectors fitted.vectors.csv --quiet");
@@ -280,6 +291,27 @@ fn with_a_rest_after_a_gap(text: &str) -> String {
     let from_s = time_s.parse::<f64>().unwrap() + 20.0;
     let rows = (0..500).map(|row| format!("{:.4},{rest}\n", from_s + 0.005 * f64::from(row)));
     text.to_owned() + &rows.collect::<String>()
+}
+
+/// A recording whose lengths differ by up to half of `range_mm` from what they were.
+fn with_noise(text: &str, range_mm: f64) -> String {
+    let (header, rows) = text.split_once('\n').unwrap();
+    let length = header.split(',').position(|name| name.starts_with("length")).unwrap();
+    let row = |(index, line): (usize, &str)| {
+        let mut values: Vec<String> = line.split(',').map(str::to_owned).collect();
+        let off_mm = range_mm * ((index * 7919 % 1013) as f64 / 1013.0 - 0.5);
+        values[length] = format!("{:.5}", values[length].parse::<f64>().unwrap() + off_mm);
+        values.join(",") + "\n"
+    };
+    format!("{header}\n") + &rows.lines().enumerate().map(row).collect::<String>()
+}
+
+/// A model whose direction has another play of the length.
+fn with_play(model: &str, length_m: f64) -> String {
+    let (before, direction) = model.split_once("\"direction\": {").unwrap();
+    let (until, after) = direction.split_once("\"length_m\": ").unwrap();
+    let (_, after) = after.split_once(',').unwrap();
+    format!("{before}\"direction\": {{{until}\"length_m\": {length_m},{after}")
 }
 
 /// Output of a script, run beside the module.

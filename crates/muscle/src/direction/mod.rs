@@ -9,7 +9,8 @@
 //!
 //! A turn is first the vertex of the parabola or the corner of the two lines that describe the length around it, whichever leaves
 //! less: the play alone notices it a threshold late. Near there the length leaves its farthest point, as a path says that no
-//! corner bends (`travel`): that is the turn, and where the two disagree the direction is unsettled. After it friction keeps its
+//! corner bends (`travel`): that is the turn, at the vertex where the path came from elsewhere and at the end of the rest where it
+//! rested, and where the two disagree the direction is unsettled. After it friction keeps its
 //! sign over some tens of micrometers ([`Thresholds::held_m`], the play of joints and strands) and goes to the other one within
 //! some more ([`Thresholds::turn_m`], their give): what the recordings say.
 //!
