@@ -3,7 +3,7 @@
 //! Channels are smooth and thinned to [`PERIOD_S`], which keeps what a muscle does and leaves out most of the white
 //! noise. Every recording is cut into blocks of consecutive instants: what is fitted on some blocks is judged on others.
 
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
@@ -72,12 +72,10 @@ impl Track {
                     thresholds,
                     base,
                     index,
+                    prepared.recording.samples.n_rows(),
                     stride,
                     Channels::Smooth,
-                    &mut |instant| {
-                        instants.push(instant);
-                        ControlFlow::Continue(())
-                    },
+                    &mut |instant| instants.push(instant),
                 )
                 .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
                 Ok(instants)

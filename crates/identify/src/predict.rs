@@ -1,7 +1,6 @@
 //! A model along a recording, row by row.
 
 use std::io;
-use std::ops::ControlFlow;
 
 use pam_artifact::ModelArtifact;
 use pam_artifact::model::Domain;
@@ -109,14 +108,7 @@ fn walk_rows(
         (now, force_n)
     };
     let walk = |visit: &mut dyn FnMut(Instant)| {
-        let mut visit = |instant: Instant| {
-            if instant.row >= n_rows {
-                return ControlFlow::Break(());
-            }
-            visit(instant);
-            ControlFlow::Continue(())
-        };
-        walk(recording, direction, thresholds, model.base(), index, 1, Channels::Recorded, &mut visit)
+        walk(recording, direction, thresholds, model.base(), index, n_rows, 1, Channels::Recorded, visit)
     };
     let delays_s = model.delays_s();
     if delays_s == [0.0; 2] {

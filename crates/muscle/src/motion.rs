@@ -4,7 +4,6 @@
 //! that never overshoot: see [`crate::smoothing`].
 
 use std::io;
-use std::ops::ControlFlow;
 
 use pam_recording::Recording;
 
@@ -18,6 +17,9 @@ use crate::smoothing::{Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Para
 const DEVIATIONS_PER_THRESHOLD: f64 = 5.0;
 /// Six deviations of the noise, from peak to peak, over a threshold of the direction.
 pub const NOISE_PER_THRESHOLD: f64 = 6.0 / DEVIATIONS_PER_THRESHOLD;
+
+/// Rows beyond the last one that a walk visits which it reads: more than the longest windows and the knees found in them reach.
+const BEYOND: usize = 512;
 
 /// One row of a recording with everything that effects need.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,8 +62,8 @@ pub enum Channels {
     Smooth,
 }
 
-/// Walks over every `stride`-th row of `recording`, in order, a segment at a time, until `visit` breaks off. `index` is the number of
-/// the recording; `base` knows the muscle.
+/// Walks over every `stride`-th of the first `n_rows` rows of `recording`, in order, a segment at a time. `index` is the number of the
+/// recording; `base` knows the muscle.
 ///
 /// # Errors
 /// Where the samples cannot be read back.
@@ -72,15 +74,19 @@ pub fn walk(
     thresholds: Thresholds,
     base: &ForceModel,
     index: usize,
+    n_rows: usize,
     stride: usize,
     channels: Channels,
-    visit: &mut dyn FnMut(Instant) -> ControlFlow<()>,
+    visit: &mut dyn FnMut(Instant),
 ) -> io::Result<()> {
     let rest_length_m = base.muscle().rest_length_m;
     let rest_slide_m_per_pa = base.slide_m_per_pa(rest_length_m);
     let mut first_s = None;
-    for segment in &recording.segments {
-        let rows = Rows::read(recording, segment.clone())?;
+    for segment in recording.segments.iter().filter(|segment| segment.start < n_rows) {
+        // What lies within the windows of the last row counts.
+        let seen = segment.start..segment.end.min(n_rows.saturating_add(BEYOND));
+        let rows = Rows::read(recording, seen)?;
+        let n_visited = rows.time_s.len().min(n_rows - segment.start);
         let Some(&begin_s) = rows.time_s.first() else { continue };
         let origin_s = *first_s.get_or_insert(begin_s);
         let window = Window::over(&rows.time_s, HALF_WINDOW_S);
@@ -105,7 +111,7 @@ pub fn walk(
         let mut rest_slide = Onward::new(noise * rest_slide_m_per_pa * thresholds.pressure_pa, within_s);
         let mut by_pressure_m = 0.0;
         let mut at = 0;
-        while at < rows.time_s.len() {
+        while at < n_visited {
             let row = segment.start + at;
             let (sharp_pressure, sharp_length) = (sharp_pressures.at(at), sharp_lengths.at(at));
             let [pressure, length] = if recorded {
@@ -132,7 +138,7 @@ pub fn walk(
             let slide_m = slide.follow(shortened_m + by_pressure_m, slide_speed_m_per_s);
             let rest_slide_m =
                 rest_slide.follow(by_pressure_m, if resting { slide_m_per_pa * sharp_pressure.slope } else { 0.0 });
-            let visited = visit(Instant {
+            visit(Instant {
                 row,
                 moment: Moment {
                     recording: index,
@@ -163,9 +169,6 @@ pub fn walk(
                     direction.is_settled(row)
                 },
             });
-            if visited.is_break() {
-                return Ok(());
-            }
             at += stride;
         }
     }
@@ -358,11 +361,9 @@ mod tests {
         let recording = read_recording(&path, &ReadOptions::default()).unwrap();
         let direction = Direction::of(&recording, THRESHOLDS, Driver::Motion).unwrap();
         let mut instants = Vec::new();
-        let mut visit = |instant| {
-            instants.push(instant);
-            ControlFlow::Continue(())
-        };
-        walk(&recording, &direction, THRESHOLDS, &base(), 0, stride, channels, &mut visit).unwrap();
+        let n_rows = recording.samples.n_rows();
+        let mut visit = |instant| instants.push(instant);
+        walk(&recording, &direction, THRESHOLDS, &base(), 0, n_rows, stride, channels, &mut visit).unwrap();
         instants
     }
 
