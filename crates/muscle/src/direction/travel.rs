@@ -292,7 +292,7 @@ mod tests {
     fn a_path_that_wanders_while_it_rests_leaves_where_it_goes() {
         // Slow noise that no average takes away.
         let wandering = |t: f64| 30e-6 * (20.0 * t - 5.7).sin() + 20e-3 * (t - 0.6).max(0.0);
-        let (white, known) = (leaves(&wandering, 120, &[]), leaves(&wandering, 120, &[0..120]));
+        let (white, known) = (leaves(&wandering, 120, &[]), leaves(&wandering, 120, std::slice::from_ref(&(0..120))));
         assert!(white.0 < 115 && known.0.abs_diff(120) <= 2, "{white:?}, {known:?}");
     }
 
