@@ -870,14 +870,14 @@ class Muscle:
         directions, unknown = directions_of(recording, self)
         if unknown and recording.force_n is not None:
             # What effects do is not taken for friction: all of the model is asked, without friction and with all of it.
-            forces_n = []
+            law, forces_n = law_of(self), []
             for state in (0.0, 1.0):
                 assumed = directions.copy()
                 for rows in unknown:
                     assumed[rows] = state
                 forces_n.append(self.along(self.moving(recording, assumed, unknown[-1].stop), True))
             for rows in unknown:
-                directions[rows] = beginning(recording, rows, law_of(self), *(force_n[rows] for force_n in forces_n))
+                directions[rows] = beginning(recording, rows, law, *(force_n[rows] for force_n in forces_n))
         return self.moving(recording, directions, len(directions))
 
     def moving(self, recording, directions, n_rows):
@@ -1071,10 +1071,10 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     if law.held_m > 0.0 or law.turn_m > 0.0:
         # A parabola over n values leaves 2.25 / n of the variance in the middle one.
         values = 2.25 * (NOISE * law.length_m / 4e-6) ** 2
-        half = Window(time_s, min(0.5 * values * period_s, 0.15)).half
+        longest = Window(time_s, min(0.5 * values * period_s, 0.15)).half
         slid = [] if law.over_pa is None else pushed
-        path = path_of(time_s, shortening, half, NOISE * law.length_m, turns_of(bounds, pushed))
-        white_m = 1.5 * NOISE * law.length_m / math.sqrt(2 * half + 1)
+        path = path_of(time_s, shortening, longest, NOISE * law.length_m, turns_of(bounds, pushed))
+        white_m = 1.5 * NOISE * law.length_m / math.sqrt(2 * longest + 1)
         wanders_m = sorted(rests_within(path, still)[1] for still in stills)
         path_noise_m = max(white_m, wanders_m[len(wanders_m) // 2] if wanders_m else 0.0)
         reach = min(max(int(math.floor(0.25 / period_s + 0.5)), 2 * half), 500)
@@ -1210,7 +1210,7 @@ def turn_over(path, noise_m, law, reach, carried, pushed, bounds):
             stop = row
             while stop < min(len(path), row + reach) and ways[stop] == ways[row]:
                 stop += 1
-            around, left_m = leaves(path, noise_m, range(max(row - reach, turn, 0), stop), way)
+            around, left_m = leaves(path, noise_m, range(max(row - reach, turn), stop), way)
             # What came before the turn still goes the other way, what lies between it and here came this way already.
             if way_before != 0 and around > row and free(row, around):
                 ways[row:around] = [way_before] * (around - row)

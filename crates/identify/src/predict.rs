@@ -64,8 +64,7 @@ pub fn walk_augmented(
     index: usize,
     visit: &mut dyn FnMut(&Instant, f64),
 ) -> io::Result<()> {
-    let last = prepared.recording.samples.n_rows();
-    walk_rows(prepared, model, thresholds, index, last, &mut |instant, _, force_n| visit(instant, force_n))
+    walk_moments(prepared, model, thresholds, index, &mut |instant, _, force_n| visit(instant, force_n))
 }
 
 /// As [`walk_augmented`], with the moment that the model's force was computed at as well: channels moved in time where the
@@ -243,16 +242,17 @@ mod tests {
     fn what_effects_add_before_the_first_motion_is_not_taken_for_friction() {
         let stiff = Term::new(effect("threshold-pressure").unwrap(), vec![3e4], vec![]);
         let augmented = AugmentedModel::new(model(), vec![stiff]);
-        let length_m = |row: u32| 0.25 - 1e-4 * f64::from(row.saturating_sub(200));
-        let columns: Vec<[f64; 3]> =
-            (0..300).map(|row| [0.01 * f64::from(row), 2e5 + 100.0 * f64::from(row), length_m(row)]).collect();
-        let column = |index: usize| columns.iter().map(|row| row[index]).collect::<Vec<f64>>();
-        let mut prepared = moving(&column(0), &column(1), &column(2), &[0.0; 300]);
+        let rows = || (0..300).map(f64::from);
+        let time_s: Vec<f64> = rows().map(|row| 0.01 * row).collect();
+        let pressure_pa: Vec<f64> = rows().map(|row| 2e5 + 100.0 * row).collect();
+        let length_m: Vec<f64> = rows().map(|row| 0.25 - 1e-4 * f64::max(row - 200.0, 0.0)).collect();
+        let with = |force_n: &[f64]| moving(&time_s, &pressure_pa, &length_m, force_n);
+        let mut prepared = with(&[0.0; 300]);
         let unknown = prepared.direction.unknown_until().expect("a rest");
         prepared.direction.assume(-0.4);
         let forces_n = augmented_forces_n(&prepared, &augmented, HELD).unwrap();
         let begun = |model: &AugmentedModel| {
-            let mut prepared = moving(&column(0), &column(1), &column(2), &forces_n);
+            let mut prepared = with(&forces_n);
             prepared.begin_with(model, HELD, 0).unwrap();
             (0..unknown).map(|row| prepared.direction.sign(row)).collect::<Vec<f64>>()
         };

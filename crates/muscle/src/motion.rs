@@ -345,6 +345,11 @@ mod tests {
 
     /// A noisy path of (pressure, length) over five seconds.
     fn walked(channels: Channels, stride: usize, at: impl Fn(f64) -> (f64, f64)) -> Vec<Instant> {
+        walked_first(1000, channels, stride, at)
+    }
+
+    /// The first `n_rows` of one.
+    fn walked_first(n_rows: usize, channels: Channels, stride: usize, at: impl Fn(f64) -> (f64, f64)) -> Vec<Instant> {
         let normal = Normal::new(0.0, 1.0).unwrap();
         let mut generator = rand_pcg::Pcg64::seed_from_u64(5);
         let mut noise = |deviation: f64| deviation * normal.sample(&mut generator);
@@ -361,10 +366,23 @@ mod tests {
         let recording = read_recording(&path, &ReadOptions::default()).unwrap();
         let direction = Direction::of(&recording, THRESHOLDS, Driver::Motion).unwrap();
         let mut instants = Vec::new();
-        let n_rows = recording.samples.n_rows();
         let mut visit = |instant| instants.push(instant);
         walk(&recording, &direction, THRESHOLDS, &base(), 0, n_rows, stride, channels, &mut visit).unwrap();
         instants
+    }
+
+    #[test]
+    fn the_first_rows_are_what_they_are_in_all_of_a_recording() {
+        // Knees at half a second and at one and a half, on either side of the last row.
+        let path = |t: f64| (3e5 + 1e5 * (t - 0.5).clamp(0.0, 1.0), 0.27 - 0.05 * (t - 0.5).clamp(0.0, 1.0));
+        let (whole, first) = (walked(Channels::Recorded, 1, path), walked_first(200, Channels::Recorded, 1, path));
+        assert_eq!(first.len(), 200);
+        for (first, whole) in first.iter().zip(&whole) {
+            let near = |first: f64, whole: f64, unit: f64| (first - whole).abs() < 1e-9 * unit;
+            let (first, whole) = (&first.moment, &whole.moment);
+            assert!(near(first.length_m, whole.length_m, 1.0) && near(first.speed_m_per_s, whole.speed_m_per_s, 1.0));
+            assert!(near(first.slide_m, whole.slide_m, 1.0) && near(first.pressure_pa, whole.pressure_pa, 1e5));
+        }
     }
 
     #[test]

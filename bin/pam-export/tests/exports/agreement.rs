@@ -186,6 +186,12 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
         desk.exported(&format!("multisine.csv --model {name}.json --vectors {name}.vectors.csv --quiet"));
         logs.push((name, "multisine.csv".to_owned()));
     }
+    // A model along a recording, with vectors.
+    let vectors = |name: &str, log: &str| {
+        let written = format!("--vectors {name}.vectors.csv --accept-implausible --quiet");
+        desk.exported(&format!("{log}.csv --model {name}.json {written}"));
+        (name.to_owned(), format!("{log}.csv"))
+    };
     // Turns, rests, steps and ramps; one with a gap, one without a force.
     for log in ["isobaric-triangles", "isometric-ramps", "length-steps", "minor-loops", "lift"] {
         desk.recording(&format!("{log}.csv"), 4000);
@@ -198,10 +204,7 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
     desk.write("no-force.csv", &without.join("\n"));
     for log in ["isobaric-triangles", "isometric-ramps", "length-steps", "minor-loops", "lift", "gap", "no-force"] {
         desk.write(&format!("{log}.json"), &desk.read("presliding_hysteresis.json"));
-        desk.exported(&format!(
-            "{log}.csv --model {log}.json --vectors {log}.vectors.csv --accept-implausible --quiet"
-        ));
-        logs.push((log.to_owned(), format!("{log}.csv")));
+        logs.push(vectors(log, log));
     }
     // Friction that slides partly while the length rests, and a rest after a gap, of which nothing is known but its force.
     let partly =
@@ -209,10 +212,7 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
     desk.write("rest.csv", &with_a_rest_after_a_gap(&desk.read("minor-loops.csv")));
     for (name, log) in [("partly", "isometric-ramps"), ("partly-rest", "rest")] {
         desk.write(&format!("{name}.json"), &partly);
-        desk.exported(&format!(
-            "{log}.csv --model {name}.json --vectors {name}.vectors.csv --accept-implausible --quiet"
-        ));
-        logs.push((name.to_owned(), format!("{log}.csv")));
+        logs.push(vectors(name, log));
     }
     // A length with noise, along which turns are vertices, corners and the ends of rests.
     let noisy = with_play(&desk.read("presliding_hysteresis.json"), 2e-4);
@@ -220,10 +220,7 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
         let name = format!("noisy-{log}");
         desk.write(&format!("{name}.csv"), &with_noise(&desk.read(&format!("{log}.csv")), 0.08));
         desk.write(&format!("{name}.json"), &noisy);
-        desk.exported(&format!(
-            "{name}.csv --model {name}.json --vectors {name}.vectors.csv --accept-implausible --quiet"
-        ));
-        logs.push((name.clone(), format!("{name}.csv")));
+        logs.push(vectors(&name, &name));
     }
     // What acts in the fitted recordings alone is nowhere.
     desk.write("fitted.json", &kept_to_fitted(&desk.read("presliding_hysteresis.json"), "presliding-hysteresis"));
