@@ -34,6 +34,7 @@ use rayon::prelude::*;
 
 mod carried;
 mod rest;
+mod slow_turn;
 mod states;
 mod thresholds;
 mod travel;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::rest::{never_rests, pushed, standstills};
+use super::slow_turn::SlowTurn;
 use super::thresholds::{Driver, Standstill, Thresholds};
 use super::travel::{Path, turn_over, turns_of};
 use super::turn::{NOISE, Turn};
@@ -109,7 +110,11 @@ impl<'a> Stretch<'a> {
                 let contraction = moving_average(&shortening, half);
                 let (play_m, noise_m) = (thresholds.length_m, NOISE * thresholds.length_m);
                 let mut resting = standstills(time_s, &contraction, play_m);
-                resting.retain(|still| !never_rests(&shortening[still.clone()], play_m, noise_m));
+                let most = (SlowTurn::LONGEST_S / period_s) as usize;
+                resting.retain(|still| {
+                    !never_rests(&shortening[still.clone()], play_m, noise_m)
+                        && !SlowTurn::goes_over(&shortening, still, most, noise_m)
+                });
                 // Deviation of an average of the length at rest.
                 let noise_m = noise_m / ((2 * half + 1) as f64).sqrt();
                 let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);

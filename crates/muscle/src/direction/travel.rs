@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::rest::rests_within;
+use super::slow_turn::SlowTurn;
 use super::states::{Bounds, State};
 use super::thresholds::Thresholds;
 use super::turn::{NOISE, is_across};
@@ -64,6 +65,8 @@ pub(super) struct Path {
     travels_m: Vec<f64>,
     /// Deviation that is left in them, in m.
     noise_m: f64,
+    /// Slow turns, in order.
+    slow_turns: Vec<SlowTurn>,
 }
 
 impl Path {
@@ -111,9 +114,20 @@ impl Path {
             let rows = before.map_or(0, |bend| bend.row)..after.map_or(n_rows, |bend| bend.row);
             travels_m.extend(rows.map(|row| sliding.parabola(row - from).value));
         }
+        let slow_turns =
+            slow_turns(shortening, turns, &bends, (longest, (SlowTurn::LONGEST_S / period_s) as usize), noise_m);
+        for turn in &slow_turns {
+            turn.rows.clone().for_each(|row| travels_m[row] = turn.at(row));
+        }
         let white_m = 1.5 * noise_m / ((2 * longest + 1) as f64).sqrt();
         let noise_m = white_m.max(wanders_m(&travels_m, resting));
-        Self { travels_m, noise_m }
+        Self { travels_m, noise_m, slow_turns }
+    }
+
+    /// Where it leaves around `row` to go the way of `way`, not before row `from`, and the travel there, of a slow turn; none where it is none.
+    fn leaves_slowly(&self, row: usize, from: usize, way: f64) -> Option<(usize, f64)> {
+        let is_here = |turn: &&SlowTurn| turn.way == way && from <= turn.vertex && turn.rows.contains(&row);
+        self.slow_turns.iter().find(is_here).map(|turn| (turn.vertex, self.travels_m[turn.vertex]))
     }
 
     /// Where within `rows` it leaves its farthest point to go the way of `way`, and the travel there.
@@ -132,6 +146,26 @@ impl Path {
         let rested = &self.travels_m[farthest..=last];
         Some((last, rested.iter().sum::<f64>() / rested.len() as f64))
     }
+}
+
+/// Those of `turns` that are slow, of which the path is smooth around all of its window: described no farther than halfway to the turns on
+/// either side, over halves between the two of `halves`, in rows.
+fn slow_turns(
+    shortening: &[f64],
+    turns: &[usize],
+    bends: &[Bend],
+    halves: (usize, usize),
+    noise_m: f64,
+) -> Vec<SlowTurn> {
+    let around = |(index, bend): (usize, &Bend)| {
+        if bend.is_split || bend.half < halves.0 {
+            return None;
+        }
+        let before = index.checked_sub(1).map_or(0, |before| turns[before].midpoint(bend.row));
+        let after = turns.get(index + 1).map_or(shortening.len(), |&after| after.midpoint(bend.row));
+        SlowTurn::around(shortening, bend.row, &(before..after), halves, noise_m)
+    };
+    bends.iter().enumerate().filter_map(around).collect()
 }
 
 /// Deviation of `travels_m` in the middle half of every standstill, the middle one of all; zero without any. White noise is averaged away
@@ -180,7 +214,8 @@ pub(super) fn turn_over(
             // No farther than the turns on either side.
             let next = row + ways[row..].iter().take(reach).take_while(|other| **other == ways[row]).count();
             let (around, left_m) = path
-                .leaves(row.saturating_sub(reach).max(turn)..next, way)
+                .leaves_slowly(row, turn, way)
+                .or_else(|| path.leaves(row.saturating_sub(reach).max(turn)..next, way))
                 .unwrap_or_else(|| (row, path.travels_m[row]));
             // What came before the turn still goes the other way, what lies between it and here came this way already.
             let free = |rows: Range<usize>| rows.into_iter().all(|row| !is_pushed[row] && ways[row] != 0);
@@ -266,7 +301,14 @@ mod tests {
         let mut states: Vec<State> =
             ways.iter().map(|&way| State { bounds: Bounds::at(way), is_settled: true }).collect();
         let slow = Thresholds { turn_m: 1e-6, ..thresholds(1e-6) };
-        turn_over(&Path { travels_m: path, noise_m: 1e-9 }, slow, 40, Bounds::at(ways[0]), &[], &mut states);
+        turn_over(
+            &Path { travels_m: path, noise_m: 1e-9, slow_turns: Vec::new() },
+            slow,
+            40,
+            Bounds::at(ways[0]),
+            &[],
+            &mut states,
+        );
         let off = states.iter().zip(&ways).filter(|(state, way)| state.bounds.middle() * **way < 0.0).count();
         assert!(off <= ways.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count(), "{off}");
     }
@@ -302,6 +344,7 @@ mod tests {
         let path = |leaves: usize| Path {
             travels_m: (0..120).map(|row: usize| -1e-5 * row.saturating_sub(leaves) as f64).collect(),
             noise_m: 1e-9,
+            slow_turns: Vec::new(),
         };
         let turned = |leaves: usize| {
             let before = State { bounds: Bounds::at(1.0), is_settled: true };

@@ -1,6 +1,7 @@
 //! Where a path turns, to a fraction of its noise.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::allocator::Allocator;
+use nalgebra::{DefaultAllocator, DimName, DimSub, Dyn, OMatrix, OVector, Vector3};
 
 /// Deviations of the noise in a threshold.
 pub(super) const NOISE: f64 = 0.2;
@@ -98,17 +99,21 @@ fn corner(values: &[f64], stride: usize, sign: f64) -> Option<(f64, usize, f64)>
 }
 
 /// Least squares of every `stride`-th of `values` less `origin`: squares that are left, and weights.
-pub(super) fn fit(
+pub(super) fn fit<D>(
     values: &[f64],
     stride: usize,
     origin: f64,
-    row: impl Fn(f64) -> Vector3<f64>,
-) -> Option<(f64, Vector3<f64>)> {
-    let (mut normal, mut right, mut squares) = (Matrix3::zeros(), Vector3::zeros(), 0.0);
+    row: impl Fn(f64) -> OVector<f64, D>,
+) -> Option<(f64, OVector<f64, D>)>
+where
+    D: DimName + DimSub<Dyn>,
+    DefaultAllocator: Allocator<D, D> + Allocator<D>,
+{
+    let (mut normal, mut right, mut squares) = (OMatrix::<f64, D, D>::zeros(), OVector::<f64, D>::zeros(), 0.0);
     for (at, value) in values.iter().enumerate().step_by(stride) {
         let (row, value) = (row(at as f64), value - origin);
-        normal += row * row.transpose();
-        right += row * value;
+        normal.ger(1.0, &row, &row, 1.0);
+        right.axpy(value, &row, 1.0);
         squares += value * value;
     }
     let weights = normal.cholesky()?.solve(&right);
