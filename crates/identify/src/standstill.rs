@@ -23,6 +23,10 @@ use crate::prepare::Prepared;
 /// Pressures over which friction may turn over, in Pa; nothing for any change that is not noise.
 const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 
+/// The law in the middle of them all. Where recordings hardly tell, an error towards either end, friction that is held and friction that
+/// follows at once, costs least from here.
+const MIDDLE: Standstill = Standstill::Slides { over_pa: 4e4, share: 1.0 };
+
 /// Shares of the friction that the pressure may bring about, less than all of it.
 const SHARES: [f64; 4] = [0.8, 0.6, 0.4, 0.2];
 
@@ -45,7 +49,7 @@ const MOST_ROWS: usize = 60_000;
 /// Rows that travels are compared on, at most, the first of every recording: they show around reversals, at the full rate.
 const TURNING_ROWS: usize = 200_000;
 
-/// Share of the mean square that a law must gain over friction that follows the pressure at once.
+/// Share of the mean square that a law must gain over the one in the middle.
 const CLEARLY: f64 = 0.01;
 
 /// Share of the mean square that friction of which the pressure turns only a share must gain over all other laws, beside a pressure
@@ -111,14 +115,12 @@ pub fn judge_by<E>(
     fitted: &dyn Fn(Vec<Standstill>, bool) -> Result<Vec<StandstillFit>, E>,
 ) -> Result<Vec<StandstillFit>, E> {
     let mut judged = fitted(laws(), false)?;
-    let most_n = judged[0].rmse_n * (1.0 - CLEARLY).sqrt();
-    // As good is not better: what follows the pressure stays first where nothing clearly beats it.
-    judged.sort_by(|left, right| {
-        let rank = |law: &StandstillFit| {
-            if law.standstill == Standstill::AT_ONCE { law.rmse_n.min(most_n) } else { law.rmse_n }
-        };
-        rank(left).total_cmp(&rank(right))
-    });
+    // As good is not better: the one in the middle stays first where nothing clearly beats it.
+    let rank = |law: &StandstillFit| {
+        let ahead = if law.standstill == MIDDLE { (1.0 - CLEARLY).sqrt() } else { 1.0 };
+        ahead * law.rmse_n
+    };
+    judged.sort_by(|left, right| rank(left).total_cmp(&rank(right)));
     let most = (1.0 - PARTLY).sqrt();
     // Where no few of them gain anything near it, none of the others is looked at.
     let promises =
