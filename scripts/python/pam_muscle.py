@@ -1046,7 +1046,9 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     play(contraction, shortening, law.length_m, half, sign_of(carried), marks, 0)
     pressure = moving_average(pressure_pa, half)
     stills = standstills(time_s, contraction, law.length_m)
-    stills = [still for still in stills if not never_rests(shortening[still.start : still.stop], law.length_m)]
+    most = int(2.0 / period_s)
+    stills = [still for still in stills if not never_rests(shortening[still.start : still.stop], law.length_m)
+              and not goes_over(shortening, still, most, NOISE * law.length_m)]  # fmt: skip
     noise_m = NOISE * law.length_m / math.sqrt(2 * half + 1)
     pushed = [pushed_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
     pushed = [rows for rows in pushed if rows is not None]
@@ -1068,17 +1070,16 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
             while unmoved < n and marks[unmoved] == 0:
                 bounds[unmoved] = bounds[still.stop - 1]
                 unmoved += 1
-    if law.held_m > 0.0 or law.turn_m > 0.0:
-        # A parabola over n values leaves 2.25 / n of the variance in the middle one.
-        values = 2.25 * (NOISE * law.length_m / 4e-6) ** 2
-        longest = Window(time_s, min(0.5 * values * period_s, 0.15)).half
-        slid = [] if law.over_pa is None else pushed
-        path = path_of(time_s, shortening, longest, NOISE * law.length_m, turns_of(bounds, pushed))
-        white_m = 1.5 * NOISE * law.length_m / math.sqrt(2 * longest + 1)
-        wanders_m = sorted(rests_within(path, still)[1] for still in stills)
-        path_noise_m = max(white_m, wanders_m[len(wanders_m) // 2] if wanders_m else 0.0)
-        reach = min(max(int(math.floor(0.25 / period_s + 0.5)), 2 * half), 500)
-        turn_over(path.tolist(), path_noise_m, law, reach, carried, slid, bounds)
+    # A parabola over n values leaves 2.25 / n of the variance in the middle one.
+    values = 2.25 * (NOISE * law.length_m / 4e-6) ** 2
+    longest = Window(time_s, min(0.5 * values * period_s, 0.15)).half
+    slid = [] if law.over_pa is None else pushed
+    path, slow = path_of(time_s, shortening, (longest, most), NOISE * law.length_m, turns_of(bounds, pushed))
+    white_m = 1.5 * NOISE * law.length_m / math.sqrt(2 * longest + 1)
+    wanders_m = sorted(rests_within(path, still)[1] for still in stills)
+    path_noise_m = max(white_m, wanders_m[len(wanders_m) // 2] if wanders_m else 0.0)
+    reach = min(max(int(math.floor(0.25 / period_s + 0.5)), 2 * half), 500)
+    turn_over(path.tolist(), slow, path_noise_m, law, reach, carried, slid, bounds)
     return bounds
 
 
@@ -1119,10 +1120,11 @@ def turns_of(bounds, pushed):
     return [row for row in turns if not any(still.start <= row <= still.stop for still in pushed)]
 
 
-def path_of(time_s, shortening, longest, noise_m, turns):
+def path_of(time_s, shortening, halves, noise_m, turns):
     """The shortening as parabolas describe it, over windows as long as its noise needs and as short as its turns do: one that goes across
-    a turn that it does not describe, such as a corner, has its vertex elsewhere."""
-    n_rows = len(shortening)
+    a turn that it does not describe, such as a corner, has its vertex elsewhere. Around a slow turn it is what a cubic says, over halves
+    between the two of `halves`; those turns come with it."""
+    n_rows, (longest, most) = len(shortening), halves
     period_s = (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1)
     bends = [(turn, *bend_at(shortening, turn, longest, noise_m)) for turn in turns]
     ends, path, start = [n_rows], [], 0
@@ -1137,7 +1139,84 @@ def path_of(time_s, shortening, longest, noise_m, turns):
         first, last = bends[index - 1][0] if index > 0 else 0, bends[index][0] if index < len(bends) else n_rows
         smooth = Window(time_s[start:end], half * period_s).parabolas(piece)[0] if len(piece) else piece
         path.append(smooth[first - start : last - start])
-    return np.concatenate(path)
+    path, slow = np.concatenate(path), []
+    for index, (row, half, is_split) in enumerate(bends):
+        if is_split or half < longest:
+            continue
+        before = (turns[index - 1] + row) // 2 if index > 0 else 0
+        after = (turns[index + 1] + row) // 2 if index + 1 < len(turns) else n_rows
+        found = slow_turn_around(shortening, row, range(before, after), (longest, most), noise_m)
+        if found is not None:
+            slow.append(found)
+            path[found.rows.start : found.rows.stop] = found.values()
+    return path, slow
+
+
+class SlowTurn:
+    """The cubic that describes the length around a slow turn, over as long a time as it does."""
+
+    def __init__(self, rows, vertex, weights, origin_m, half):
+        self.rows, self.vertex, self.way = rows, vertex, math.copysign(1.0, weights[2])
+        self.weights, self.origin_m, self.half = weights, origin_m, half
+
+    def values(self):
+        return self.origin_m + cubics(np.arange(len(self.rows)) / self.half - 1.0) @ self.weights
+
+
+def cubics(along):
+    return np.stack([np.ones_like(along), along, along**2, along**3], 1)
+
+
+def slow_turn_around(shortening, turn, room, halves, noise_m):
+    """The longest slow turn around row `turn` within `room`, or None."""
+    (half, most), found = halves, None
+    least = half
+    while True:
+        half, row, longer = min(2 * half, most), turn if found is None else found.vertex, None
+        for _ in range(3):
+            reach = min(half, row - room.start, room.stop - 1 - row)
+            if reach <= (least if found is None else len(found.rows) // 2):
+                return found
+            longer = slow_turn_over(shortening, range(row - reach, row + reach + 1), noise_m)
+            if longer is None:
+                return found
+            row = longer.vertex
+        found = longer
+        if half == most:
+            return found
+
+
+def goes_over(shortening, still, most, noise_m):
+    """Whether the length, which seems to rest, turns slowly there."""
+    middle, least = (still.start + still.stop) // 2, len(still) // 2
+    turn = slow_turn_around(shortening, middle, range(len(shortening)), (least, most), noise_m)
+    return turn is not None and turn.vertex in still and abs(turn.weights[2]) > 100.0 * noise_m / math.sqrt(len(turn.rows))
+
+
+def slow_turn_over(shortening, rows, noise_m):
+    """The cubic over rows; None without a vertex among them, where it is no more than noise, or where two surely leave less."""
+    values, per_bin = shortening[rows.start : rows.stop], -(-len(rows) // 64)
+    n_bins = len(values) // per_bin
+    means = (values[: n_bins * per_bin] - values[0]).reshape(n_bins, per_bin).sum(1) / per_bin
+
+    def cubic(first, last):
+        half = 0.5 * ((last - first) * per_bin - 1.0)
+        along = ((np.arange(last - first) + 0.5) * per_bin - 0.5) / half - 1.0
+        return least_squares(cubics(along), means[first:last])
+
+    one, before, after = cubic(0, n_bins), cubic(0, n_bins // 2), cubic(n_bins // 2, n_bins)
+    if one is None or before is None or after is None:
+        return None
+    (left, weights), half = one, 0.5 * (n_bins * per_bin - 1.0)
+    _, slope, square, third = weights
+    inner = square * square - 3.0 * slope * third
+    if not inner >= 0.0 or left - before[0] - after[0] > (4.0 * noise_m) ** 2 / per_bin:
+        return None
+    below = square + math.copysign(math.sqrt(inner), square)
+    along = -slope / below if below != 0.0 else math.inf
+    if abs(along) >= 1.0 or abs(square) - abs(third) <= 8.0 * noise_m / math.sqrt(len(rows)):
+        return None
+    return SlowTurn(rows, rows.start + int(math.floor(half * (along + 1.0) + 0.5)), weights, values[0], half)
 
 
 def bend_at(shortening, row, half, noise_m):
@@ -1184,7 +1263,7 @@ def leaves(path, noise_m, rows, way):
     return rows.start + last, way * ahead_m[farthest : last + 1].mean()
 
 
-def turn_over(path, noise_m, law, reach, carried, pushed, bounds):
+def turn_over(path, slow, noise_m, law, reach, carried, pushed, bounds):
     """Lets the states follow the travel along `path` after every turn; over the ranges `pushed` the pressure moves them. A turn is
     where the path leaves its farthest point, within `reach` rows of where the sign changes."""
     ways, is_pushed = [sign_of(bound) for bound in bounds], [False] * len(bounds)
@@ -1210,7 +1289,9 @@ def turn_over(path, noise_m, law, reach, carried, pushed, bounds):
             stop = row
             while stop < min(len(path), row + reach) and ways[stop] == ways[row]:
                 stop += 1
-            around, left_m = leaves(path, noise_m, range(max(row - reach, turn), stop), way)
+            here = next((one for one in slow if one.way == way and turn <= one.vertex and row in one.rows), None)
+            around, left_m = ((here.vertex, path[here.vertex]) if here is not None
+                              else leaves(path, noise_m, range(max(row - reach, turn), stop), way))  # fmt: skip
             # What came before the turn still goes the other way, what lies between it and here came this way already.
             if way_before != 0 and around > row and free(row, around):
                 ways[row:around] = [way_before] * (around - row)

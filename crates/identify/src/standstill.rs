@@ -371,6 +371,22 @@ mod tests {
     }
 
     #[test]
+    fn the_law_in_the_middle_is_taken_where_no_other_clearly_leaves_less() {
+        let first = |of: &dyn Fn(Standstill) -> f64| {
+            let fitted = |laws: Vec<Standstill>, _| -> Result<Vec<StandstillFit>, IdentifyError> {
+                Ok(laws.into_iter().map(|law| StandstillFit { standstill: law, rmse_n: of(law) }).collect())
+            };
+            judge_by(&fitted).expect("laws")[0].standstill
+        };
+        let by = |one: Standstill, rmse_n: f64| move |law: Standstill| if law == one { rmse_n } else { 1.0 };
+        assert_eq!(first(&|_| 1.0), MIDDLE);
+        for law in [Standstill::Held, Standstill::AT_ONCE] {
+            assert_eq!(first(&by(law, 0.997)), MIDDLE);
+            assert_eq!(first(&by(law, 0.99)), law);
+        }
+    }
+
+    #[test]
     fn laws_that_leave_the_same_are_undecided_and_one_law_alone_is_not() {
         let law = |rmse_n| StandstillFit { standstill: Standstill::Held, rmse_n };
         assert!(is_undecided(&[law(0.9489), law(0.9489), law(0.9501)]));

@@ -110,10 +110,10 @@ impl<'a> Stretch<'a> {
                 let contraction = moving_average(&shortening, half);
                 let (play_m, noise_m) = (thresholds.length_m, NOISE * thresholds.length_m);
                 let mut resting = standstills(time_s, &contraction, play_m);
-                let most = (SlowTurn::LONGEST_S / period_s) as usize;
+                let most = SlowTurn::longest(period_s);
                 resting.retain(|still| {
                     !never_rests(&shortening[still.clone()], play_m, noise_m)
-                        && !SlowTurn::goes_over(&shortening, still, most, noise_m)
+                        && !SlowTurn::is_at(&shortening, still, most, noise_m)
                 });
                 // Deviation of an average of the length at rest.
                 let noise_m = noise_m / ((2 * half + 1) as f64).sqrt();
