@@ -56,12 +56,16 @@ impl SlowTurn {
             let mut longer = None;
             for _ in 0..Self::ROUNDS {
                 let reach = half.min(row - room.start).min(room.end.saturating_sub(row + 1));
-                let rows = row - reach..row + reach + 1;
-                longer = if reach > shorter { Self::over(shortening, rows, noise_m) } else { None };
-                let Some(longer) = &longer else { return found };
-                row = longer.vertex;
+                if reach <= shorter {
+                    return found;
+                }
+                match Described::over(shortening, row - reach..row + reach + 1, noise_m) {
+                    Described::Turn(turn) => row = longer.insert(turn).vertex,
+                    Described::Unclear => break,
+                    Described::Otherwise => return found,
+                }
             }
-            found = longer;
+            found = longer.or(found);
         }
         found
     }
@@ -76,32 +80,42 @@ impl SlowTurn {
         })
     }
 
-    /// The cubic over `rows`; none without a vertex among them, where it is no more than noise, or where two surely leave less.
-    fn over(shortening: &[f64], rows: Range<usize>, noise_m: f64) -> Option<Self> {
+    /// The shortening at one of its rows, in m.
+    pub(super) fn at(&self, row: usize) -> f64 {
+        self.origin_m + self.weights.dot(&cubic((row - self.rows.start) as f64 / self.half - 1.0))
+    }
+}
+
+/// What the cubic over some rows says.
+enum Described {
+    Turn(SlowTurn),
+    /// That the length does not turn there, or by no more than noise.
+    Unclear,
+    /// Nothing: two surely leave less.
+    Otherwise,
+}
+
+impl Described {
+    fn over(shortening: &[f64], rows: Range<usize>, noise_m: f64) -> Self {
         let bins = Bins::of(&shortening[rows.clone()]);
         let (n_bins, half) = (bins.means.len(), bins.half(bins.means.len()));
-        let (one, weights) = bins.cubic(0..n_bins)?;
-        let (before, after) = bins.cubic(0..n_bins / 2).zip(bins.cubic(n_bins / 2..n_bins))?;
-        let falls_short = one - before.0 - after.0 > (Self::SURELY * noise_m).powi(2) / bins.rows as f64;
+        let (one, before, after) = (bins.cubic(0..n_bins), bins.cubic(0..n_bins / 2), bins.cubic(n_bins / 2..n_bins));
+        let Some(((one, weights), (before, after))) = one.zip(before.zip(after)) else { return Self::Unclear };
+        if one - before.0 - after.0 > (SlowTurn::SURELY * noise_m).powi(2) / bins.rows as f64 {
+            return Self::Otherwise;
+        }
         let [_, slope, square, third] = weights.into();
         // Of the two roots of the slope the one near the vertex of the parabola.
         let root = (square * square - 3.0 * slope * third).sqrt();
         let along = -slope / (square + root.copysign(square));
         let mean_m = noise_m / (rows.len() as f64).sqrt();
-        let is_clear = along.abs() < 1.0 && square.abs() - third.abs() > Self::CLEARLY * mean_m;
-        (is_clear && !falls_short).then(|| Self {
-            vertex: rows.start + (half * (along + 1.0)).round() as usize,
-            way: square.signum(),
-            weights,
-            origin_m: shortening[rows.start],
-            half,
-            rows,
-        })
-    }
-
-    /// The shortening at one of its rows, in m.
-    pub(super) fn at(&self, row: usize) -> f64 {
-        self.origin_m + self.weights.dot(&cubic((row - self.rows.start) as f64 / self.half - 1.0))
+        let away_m = [-1.0, 1.0].map(|end| square.signum() * weights.dot(&(cubic(end) - cubic(along))));
+        if along.abs() < 1.0 && away_m[0].min(away_m[1]) > SlowTurn::CLEARLY * mean_m {
+            let vertex = rows.start + (half * (along + 1.0)).round() as usize;
+            let origin_m = shortening[rows.start];
+            return Self::Turn(SlowTurn { rows, vertex, way: square.signum(), weights, origin_m, half });
+        }
+        Self::Unclear
     }
 }
 
