@@ -1140,8 +1140,8 @@ def path_of(time_s, shortening, halves, noise_m, turns):
         smooth = Window(time_s[start:end], half * period_s).parabolas(piece)[0] if len(piece) else piece
         path.append(smooth[first - start : last - start])
     path, slow = np.concatenate(path), []
-    for index, (row, half, is_split) in enumerate(bends):
-        if is_split or half < longest:
+    for index, (row, _, is_split) in enumerate(bends):
+        if is_split:
             continue
         before = (turns[index - 1] + row) // 2 if index > 0 else 0
         after = (turns[index + 1] + row) // 2 if index + 1 < len(turns) else n_rows
@@ -1171,19 +1171,22 @@ def slow_turn_around(shortening, turn, room, halves, noise_m):
     """The longest slow turn around row `turn` within `room`, or None."""
     (half, most), found = halves, None
     least = half
-    while True:
-        half, row, longer = min(2 * half, most), turn if found is None else found.vertex, None
+    while half < most:
+        half = min(2 * half, most)
+        row, shorter = (turn, least) if found is None else (found.vertex, len(found.rows) // 2)
+        longer = None
         for _ in range(3):
             reach = min(half, row - room.start, room.stop - 1 - row)
-            if reach <= (least if found is None else len(found.rows) // 2):
+            if reach <= shorter:
                 return found
-            longer = slow_turn_over(shortening, range(row - reach, row + reach + 1), noise_m)
-            if longer is None:
+            is_otherwise, here = slow_turn_over(shortening, range(row - reach, row + reach + 1), noise_m)
+            if is_otherwise:
                 return found
-            row = longer.vertex
-        found = longer
-        if half == most:
-            return found
+            if here is None:
+                break
+            row, longer = here.vertex, here
+        found = found if longer is None else longer
+    return found
 
 
 def goes_over(shortening, still, most, noise_m):
@@ -1194,7 +1197,7 @@ def goes_over(shortening, still, most, noise_m):
 
 
 def slow_turn_over(shortening, rows, noise_m):
-    """The cubic over rows; None without a vertex among them, where it is no more than noise, or where two surely leave less."""
+    """Whether two cubics surely leave less than one over rows, and the slow turn that it is there, or None."""
     values, per_bin = shortening[rows.start : rows.stop], -(-len(rows) // 64)
     n_bins = len(values) // per_bin
     means = (values[: n_bins * per_bin] - values[0]).reshape(n_bins, per_bin).sum(1) / per_bin
@@ -1206,17 +1209,21 @@ def slow_turn_over(shortening, rows, noise_m):
 
     one, before, after = cubic(0, n_bins), cubic(0, n_bins // 2), cubic(n_bins // 2, n_bins)
     if one is None or before is None or after is None:
-        return None
+        return False, None
     (left, weights), half = one, 0.5 * (n_bins * per_bin - 1.0)
+    if left - before[0] - after[0] > (4.0 * noise_m) ** 2 / per_bin:
+        return True, None
     _, slope, square, third = weights
     inner = square * square - 3.0 * slope * third
-    if not inner >= 0.0 or left - before[0] - after[0] > (4.0 * noise_m) ** 2 / per_bin:
-        return None
-    below = square + math.copysign(math.sqrt(inner), square)
+    below = square + math.copysign(math.sqrt(inner), square) if inner >= 0.0 else 0.0
     along = -slope / below if below != 0.0 else math.inf
-    if abs(along) >= 1.0 or abs(square) - abs(third) <= 8.0 * noise_m / math.sqrt(len(rows)):
-        return None
-    return SlowTurn(rows, rows.start + int(math.floor(half * (along + 1.0) + 0.5)), weights, values[0], half)
+    if abs(along) >= 1.0:
+        return False, None
+    away_m = math.copysign(1.0, square) * ((cubics(np.array([-1.0, 1.0])) - cubics(np.array([along]))) @ weights)
+    if away_m.min() <= 8.0 * noise_m / math.sqrt(len(rows)):
+        return False, None
+    vertex = rows.start + int(math.floor(half * (along + 1.0) + 0.5))
+    return False, SlowTurn(rows, vertex, weights, values[0], half)
 
 
 def bend_at(shortening, row, half, noise_m):

@@ -147,8 +147,8 @@ impl Path {
     }
 }
 
-/// Those of `turns` that are slow, of which the path is smooth around all of its window: described no farther than halfway to the turns on
-/// either side, over halves between the two of `halves`, in rows.
+/// Those of `turns` that are slow and no corners, described no farther than halfway to the turns on either side, over halves between the
+/// two of `halves`, in rows.
 fn slow_turns(
     shortening: &[f64],
     turns: &[usize],
@@ -157,7 +157,7 @@ fn slow_turns(
     noise_m: f64,
 ) -> Vec<SlowTurn> {
     let around = |(index, bend): (usize, &Bend)| {
-        if bend.is_split || bend.half < halves.0 {
+        if bend.is_split {
             return None;
         }
         let before = index.checked_sub(1).map_or(0, |before| turns[before].midpoint(bend.row));
