@@ -25,7 +25,9 @@ const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 
 /// The law in the middle of them all. Where recordings hardly tell, an error towards either end, friction that is held and friction that
 /// follows at once, costs least from here.
-const MIDDLE: Standstill = Standstill::Slides { over_pa: 4e4, share: 1.0 };
+const MIDDLE: Standstill = Standstill::Slides { over_pa: MIDDLE_PA, share: 1.0 };
+/// See [`MIDDLE`].
+const MIDDLE_PA: f64 = 4e4;
 
 /// Shares of the friction that the pressure may bring about, less than all of it.
 const SHARES: [f64; 4] = [0.8, 0.6, 0.4, 0.2];
@@ -49,7 +51,7 @@ const MOST_ROWS: usize = 60_000;
 /// Rows that travels are compared on, at most, the first of every recording: they show around reversals, at the full rate.
 const TURNING_ROWS: usize = 200_000;
 
-/// Share of the mean square that a law must gain over the one in the middle.
+/// Share of the mean square that friction which is held, or follows at once, must gain over the law in the middle.
 const CLEARLY: f64 = 0.01;
 
 /// Share of the mean square that friction of which the pressure turns only a share must gain over all other laws, beside a pressure
@@ -115,12 +117,7 @@ pub fn judge_by<E>(
     fitted: &dyn Fn(Vec<Standstill>, bool) -> Result<Vec<StandstillFit>, E>,
 ) -> Result<Vec<StandstillFit>, E> {
     let mut judged = fitted(laws(), false)?;
-    // As good is not better: the one in the middle stays first where nothing clearly beats it.
-    let rank = |law: &StandstillFit| {
-        let ahead = if law.standstill == MIDDLE { (1.0 - CLEARLY).sqrt() } else { 1.0 };
-        ahead * law.rmse_n
-    };
-    judged.sort_by(|left, right| rank(left).total_cmp(&rank(right)));
+    sort(&mut judged);
     let most = (1.0 - PARTLY).sqrt();
     // Where no few of them gain anything near it, none of the others is looked at.
     let promises =
@@ -134,6 +131,23 @@ pub fn judge_by<E>(
         }
     }
     Ok(judged)
+}
+
+/// Brings them into the order in which they are to be taken, those that leave least first. As good is not better: friction that follows
+/// the pressure at once, or is held, comes after all between them unless it leaves clearly less than the middle one, and of laws that
+/// leave the same the nearest to the middle is first.
+fn sort(laws: &mut [StandstillFit]) {
+    let most_n = laws.iter().find(|law| law.standstill == MIDDLE).map_or(f64::INFINITY, |law| law.rmse_n)
+        * (1.0 - CLEARLY).sqrt();
+    let place = |law: &StandstillFit| match law.standstill {
+        Standstill::Slides { over_pa, .. } if over_pa > 0.0 => (over_pa / MIDDLE_PA).ln().abs(),
+        _ => f64::INFINITY,
+    };
+    let waits = |law: &StandstillFit| place(law).is_infinite() && law.rmse_n > most_n;
+    laws.sort_by(|one, other| {
+        let by_rmse = one.rmse_n.total_cmp(&other.rmse_n);
+        waits(one).cmp(&waits(other)).then(by_rmse).then(place(one).total_cmp(&place(other)))
+    });
 }
 
 fn least(laws: Vec<StandstillFit>) -> Option<StandstillFit> {
@@ -371,13 +385,16 @@ mod tests {
     }
 
     #[test]
-    fn the_law_in_the_middle_is_taken_where_no_other_clearly_leaves_less() {
+    fn friction_is_held_or_follows_at_once_only_where_that_clearly_leaves_less_than_the_middle() {
         let first = |of: &dyn Fn(Standstill) -> f64| {
             let fitted = |laws: Vec<Standstill>, _| -> Result<Vec<StandstillFit>, IdentifyError> {
                 Ok(laws.into_iter().map(|law| StandstillFit { standstill: law, rmse_n: of(law) }).collect())
             };
             judge_by(&fitted).expect("laws")[0].standstill
         };
+        // Between the ends as little as there is decides.
+        let sooner = Standstill::Slides { over_pa: 2e4, share: 1.0 };
+        assert_eq!(first(&|law| if law == sooner { 0.9999 } else { 1.0 }), sooner);
         let by = |one: Standstill, rmse_n: f64| move |law: Standstill| if law == one { rmse_n } else { 1.0 };
         assert_eq!(first(&|_| 1.0), MIDDLE);
         for law in [Standstill::Held, Standstill::AT_ONCE] {
