@@ -28,6 +28,8 @@ const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 const MIDDLE: Standstill = Standstill::Slides { over_pa: MIDDLE_PA, share: 1.0 };
 /// See [`MIDDLE`].
 const MIDDLE_PA: f64 = 4e4;
+/// How many times more or less pressure is near that, where what recordings tell decides.
+const NEAR: f64 = 2.0;
 
 /// Shares of the friction that the pressure may bring about, less than all of it.
 const SHARES: [f64; 4] = [0.8, 0.6, 0.4, 0.2];
@@ -51,7 +53,7 @@ const MOST_ROWS: usize = 60_000;
 /// Rows that travels are compared on, at most, the first of every recording: they show around reversals, at the full rate.
 const TURNING_ROWS: usize = 200_000;
 
-/// Share of the mean square that friction which is held, or follows at once, must gain over the law in the middle.
+/// Share of the mean square that a law far from the middle must gain over that one.
 const CLEARLY: f64 = 0.01;
 
 /// Share of the mean square that friction of which the pressure turns only a share must gain over all other laws, beside a pressure
@@ -133,20 +135,20 @@ pub fn judge_by<E>(
     Ok(judged)
 }
 
-/// Brings them into the order in which they are to be taken, those that leave least first. As good is not better: friction that follows
-/// the pressure at once, or is held, comes after all between them unless it leaves clearly less than the middle one, and of laws that
-/// leave the same the nearest to the middle is first.
+/// Brings them into the order in which they are to be taken, those that leave least first. As good is not better: a law farther from the
+/// middle than [`NEAR`] comes after those within unless it leaves clearly less than the middle one, and of laws that leave the same the
+/// nearest to the middle is first.
 fn sort(laws: &mut [StandstillFit]) {
     let most_n = laws.iter().find(|law| law.standstill == MIDDLE).map_or(f64::INFINITY, |law| law.rmse_n)
         * (1.0 - CLEARLY).sqrt();
-    let place = |law: &StandstillFit| match law.standstill {
-        Standstill::Slides { over_pa, .. } if over_pa > 0.0 => (over_pa / MIDDLE_PA).ln().abs(),
+    let away = |law: &StandstillFit| match law.standstill {
+        Standstill::Slides { over_pa, .. } if over_pa > 0.0 => (over_pa / MIDDLE_PA).max(MIDDLE_PA / over_pa),
         _ => f64::INFINITY,
     };
-    let waits = |law: &StandstillFit| place(law).is_infinite() && law.rmse_n > most_n;
+    let waits = |law: &StandstillFit| away(law) > NEAR && law.rmse_n > most_n;
     laws.sort_by(|one, other| {
         let by_rmse = one.rmse_n.total_cmp(&other.rmse_n);
-        waits(one).cmp(&waits(other)).then(by_rmse).then(place(one).total_cmp(&place(other)))
+        waits(one).cmp(&waits(other)).then(by_rmse).then(away(one).total_cmp(&away(other)))
     });
 }
 
@@ -385,19 +387,19 @@ mod tests {
     }
 
     #[test]
-    fn friction_is_held_or_follows_at_once_only_where_that_clearly_leaves_less_than_the_middle() {
+    fn a_law_far_from_the_middle_is_taken_only_where_it_clearly_leaves_less() {
         let first = |of: &dyn Fn(Standstill) -> f64| {
             let fitted = |laws: Vec<Standstill>, _| -> Result<Vec<StandstillFit>, IdentifyError> {
                 Ok(laws.into_iter().map(|law| StandstillFit { standstill: law, rmse_n: of(law) }).collect())
             };
             judge_by(&fitted).expect("laws")[0].standstill
         };
-        // Between the ends as little as there is decides.
+        // Near the middle as little as there is decides.
         let sooner = Standstill::Slides { over_pa: 2e4, share: 1.0 };
         assert_eq!(first(&|law| if law == sooner { 0.9999 } else { 1.0 }), sooner);
         let by = |one: Standstill, rmse_n: f64| move |law: Standstill| if law == one { rmse_n } else { 1.0 };
         assert_eq!(first(&|_| 1.0), MIDDLE);
-        for law in [Standstill::Held, Standstill::AT_ONCE] {
+        for law in [Standstill::Held, Standstill::AT_ONCE, Standstill::Slides { over_pa: 1.6e5, share: 1.0 }] {
             assert_eq!(first(&by(law, 0.997)), MIDDLE);
             assert_eq!(first(&by(law, 0.99)), law);
         }
