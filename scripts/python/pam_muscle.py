@@ -1124,7 +1124,7 @@ def path_of(time_s, shortening, halves, noise_m, turns):
     """The shortening as parabolas describe it, over windows as long as its noise needs and as short as its turns do: one that goes across
     a turn that it does not describe, such as a corner, has its vertex elsewhere. Around a slow turn it is what a cubic says, over halves
     between the two of `halves`; those turns come with it."""
-    n_rows, (longest, most) = len(shortening), halves
+    n_rows, longest = len(shortening), halves[0]
     period_s = (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1)
     bends = [(turn, *bend_at(shortening, turn, longest, noise_m)) for turn in turns]
     ends, path, start = [n_rows], [], 0
@@ -1145,7 +1145,7 @@ def path_of(time_s, shortening, halves, noise_m, turns):
             continue
         before = (turns[index - 1] + row) // 2 if index > 0 else 0
         after = (turns[index + 1] + row) // 2 if index + 1 < len(turns) else n_rows
-        found = slow_turn_around(shortening, row, range(before, after), (longest, most), noise_m)
+        found = slow_turn_around(shortening, row, range(before, after), halves, noise_m)
         if found is not None:
             slow.append(found)
             path[found.rows.start : found.rows.stop] = found.values()
@@ -1169,8 +1169,8 @@ def cubics(along):
 
 def slow_turn_around(shortening, turn, room, halves, noise_m):
     """The longest slow turn around row `turn` within `room`, or None."""
-    (half, most), found = halves, None
-    least = half
+    (least, most), found = halves, None
+    half = least
     while half < most:
         half = min(2 * half, most)
         row, shorter = (turn, least) if found is None else (found.vertex, len(found.rows) // 2)

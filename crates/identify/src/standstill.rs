@@ -24,7 +24,8 @@ use crate::prepare::Prepared;
 const OVER_PA: [f64; 6] = [0.0, 1e4, 2e4, 4e4, 8e4, 1.6e5];
 
 /// The law in the middle of them all. Where recordings hardly tell, an error towards either end, friction that is held and friction that
-/// follows at once, costs least from here.
+/// follows at once, costs least from here. With 20 or 80 kPa in its place, before all others that are not clearly better, eq. 11 leaves 1 % more
+/// of 80 healthy muscles of other worlds in the mean, and as much of 240 others, to half a percent.
 const MIDDLE: Standstill = Standstill::Slides { over_pa: MIDDLE_PA, share: 1.0 };
 /// See [`MIDDLE`].
 const MIDDLE_PA: f64 = 4e4;

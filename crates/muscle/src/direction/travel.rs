@@ -123,7 +123,7 @@ impl Path {
         Self { travels_m, noise_m, slow_turns }
     }
 
-    /// Where it leaves around `row` to go the way of `way`, not before row `from`, and the travel there, of a slow turn; none where it is none.
+    /// Vertex of the slow turn around `row` that goes the way of `way`, not before row `from`, and the travel there; none where no slow one is.
     fn leaves_slowly(&self, row: usize, from: usize, way: f64) -> Option<(usize, f64)> {
         let is_here = |turn: &&SlowTurn| turn.way == way && from <= turn.vertex && turn.rows.contains(&row);
         self.slow_turns.iter().find(is_here).map(|turn| (turn.vertex, self.travels_m[turn.vertex]))
