@@ -26,9 +26,11 @@ impl SlowTurn {
     /// Longest half, in s: that of a swing of some eight seconds. With half or twice of it eq. 11 leaves as much of 160 cases of other worlds,
     /// to 0.2 % in the mean.
     const LONGEST_S: f64 = 2.0;
-    /// Deviations by which one cubic must fall short of two, before and after its middle, to be none.
+    /// Deviations by which one cubic must fall short of two, before and after its middle, to be none. With half of it eq. 11 leaves 3 % more
+    /// of the 40 healthy ones of these cases and as much of the others, with twice of it as much of all, to half a percent.
     const SURELY: f64 = 4.0;
-    /// Deviations of the mean of its rows by which the length is away from the vertex at both ends, at least.
+    /// Deviations of the mean of its rows by which the length is away from the vertex at both ends, at least. With half of it eq. 11
+    /// leaves as much, to 0.1 %.
     const CLEARLY: f64 = 8.0;
     /// The same where no rest may look like it: of a rest between two motions a cubic leaves a tenth of the way to the ends.
     const NO_REST: f64 = 100.0;
