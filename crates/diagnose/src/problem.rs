@@ -17,14 +17,6 @@ use crate::track::Track;
 use crate::turns;
 use crate::verdict::Sizes;
 
-/// Share of what an abrupt step explains that taking it off may cost: where a static map takes it, taking it off gains nothing, but
-/// where no step is, taking one off leaves all of it.
-const COSTS: f64 = 0.1;
-/// The same of one that is not abrupt: times the mean square that a search leaves below which one must leave it that the step was taken
-/// off before. When jumps were looked for on the grid, six steps of 9 N that were added to recordings of real muscles left at most 0.90
-/// times; of four on other worlds that were none, three left 0.97 and more, and the fourth, as a recording began, 0.83.
-const CLEARLY_LESS: f64 = 0.95;
-
 /// What a search is made with, but for the track.
 #[derive(Debug)]
 pub struct DiagnosisProblem<'a> {
@@ -110,8 +102,7 @@ impl<'a> DiagnosisProblem<'a> {
         Ok(SearchOutcome { track, found, knocks: Some(knocks), step: None, sizes })
     }
 
-    /// `outcome`, or the same beside a step of the force at rest where one is there that matters, and clearly less is left, or,
-    /// where it is abrupt, hardly more.
+    /// `outcome`, or the same beside a step of the force at rest where one is there that matters, and no more is left than it may leave.
     fn beside_step(&self, outcome: SearchOutcome, looked: &dyn Fn()) -> Result<SearchOutcome, DiagnoseError> {
         let is_excluded = self.limits.excluded.iter().any(|id| id == resting_step::ID);
         if is_excluded || self.limits.max_effects == 0 {
@@ -128,15 +119,11 @@ impl<'a> DiagnosisProblem<'a> {
         let direction = self.model.direction;
         let without = &outcome.found.best.held_out;
         let steps = RestingStep::all(self.estimation, &outcome.track, direction, muscle, without)?;
-        // One that the search found elsewhere would be lost.
         let named = outcome.found.best.state.terms();
-        let keeps = |step: &RestingStep| named.iter().all(|term| !step.loses(term));
-        for step in steps.into_iter().filter(|step| step.all_instants_n > matters_n && keeps(step)) {
+        for step in steps.into_iter().filter(|step| step.all_instants_n > matters_n) {
             let track = step.taken_off(outcome.track.clone(), muscle);
             let (found, sizes) = beside.search(&track, looked)?;
-            let may_leave =
-                if step.is_abrupt() { before + COSTS * step.all_instants_n.powi(2) } else { CLEARLY_LESS * before };
-            if left(&found) < least.min(may_leave) {
+            if left(&found) < least.min(step.may_leave(before, &named)) {
                 least = left(&found);
                 let step = step.compared(&found.best.held_out);
                 let sizes = sizes.with(step.all_instants_n);
