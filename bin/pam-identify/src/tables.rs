@@ -1,7 +1,7 @@
 //! Tables and messages for the terminal.
 
 use pam_artifact::ModelArtifact;
-use pam_artifact::model::{FitStatistics, ParameterEntry, ParameterStatus};
+use pam_artifact::model::{FitStatistics, ParameterEntry, ParameterStatus, StandstillFit};
 use pam_identification::prepare::Gated;
 use pam_recording::quality::{ChannelQuality, RecordingQuality};
 use pam_report::Table;
@@ -125,21 +125,29 @@ fn stuck(channel: &ChannelQuality) -> String {
     if share > 0.0 { format!("{:.1} %", 100.0 * share) } else { "-".to_owned() }
 }
 
-/// What friction does where no motion tells its direction, with what the second best law leaves; none where one was assumed.
+/// What friction does where no motion tells its direction, with what the least of the other laws leaves; none where one was assumed.
 pub(crate) fn friction(artifact: &ModelArtifact) -> Option<String> {
-    let [best, second, ..] = artifact.standstill_laws.as_slice() else { return None };
+    let [taken, others @ ..] = artifact.standstill_laws.as_slice() else { return None };
+    let compared = compared(taken, others)?;
     let [held_um, turn_um] = [artifact.direction.held_m, artifact.direction.turn_m].map(|travel_m| travel_m * 1e6);
     let turns = match (held_um > 0.0, turn_um > 0.0) {
         (false, false) => "at once after a reversal".to_owned(),
         (true, false) => format!("{held_um:.0} µm after a reversal"),
         (_, true) => format!("between {held_um:.0} and {:.0} µm after a reversal", held_um + turn_um),
     };
+    Some(format!("{}, and turns over {turns}; {compared}", taken.standstill.words()))
+}
+
+/// What eq. 11 leaves under the law `taken`, and under the one of `others` that leaves least; none where there is no other.
+fn compared(taken: &StandstillFit, others: &[StandstillFit]) -> Option<String> {
+    let least = others.iter().min_by(|one, other| one.rmse_n.total_cmp(&other.rmse_n))?;
+    // The order in which they stand is one of preference: a law at an end gives way to one in the middle that leaves about the same.
+    let too_little = if least.rmse_n < taken.rmse_n { ", too little less to tell" } else { "" };
     Some(format!(
-        "{}, and turns over {turns}; eq. 11 with free weights then leaves {:.3} N, and {:.3} N where {}",
-        best.standstill.words(),
-        best.rmse_n,
-        second.rmse_n,
-        second.standstill.words()
+        "eq. 11 with free weights then leaves {:.3} N, and {:.3} N where {}{too_little}",
+        taken.rmse_n,
+        least.rmse_n,
+        least.standstill.words()
     ))
 }
 
@@ -279,4 +287,25 @@ pub(crate) fn forms(first: &ModelArtifact, second: &ModelArtifact) -> String {
         ]);
     }
     format!("What the misprints cost\n{}", table.to_terminal())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pam_muscle::direction::Standstill;
+
+    fn law(standstill: Standstill, rmse_n: f64) -> StandstillFit {
+        StandstillFit { standstill, rmse_n }
+    }
+
+    #[test]
+    fn the_law_taken_stands_beside_the_one_that_leaves_least_of_the_others_whatever_their_order() {
+        let taken = law(Standstill::Slides { over_pa: 4e4, share: 1.0 }, 9.7);
+        let (next, least) = (law(Standstill::Held, 9.9), law(Standstill::AT_ONCE, 9.8));
+        let words = compared(&taken, &[next, least]).expect("two others");
+        assert!(words.contains("9.700 N, and 9.800 N") && words.ends_with(&Standstill::AT_ONCE.words()), "{words}");
+        let words = compared(&taken, &[next, StandstillFit { rmse_n: 9.69, ..least }]).expect("two others");
+        assert!(words.contains("9.690 N") && words.ends_with("too little less to tell"), "{words}");
+        assert_eq!(compared(&taken, &[]), None);
+    }
 }
