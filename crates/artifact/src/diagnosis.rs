@@ -51,6 +51,9 @@ pub struct DiagnosisArtifact {
     /// Empirical terms of unmodelled structure; none where nothing was found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub empirical: Option<Empirical>,
+    /// What the force does at one frequency while no drive does; none where nothing was found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<Periodic>,
     /// Whether the augmented model has a smooth static map over pressure and contraction, which every figure of `fit` after the
     /// effects includes.
     #[serde(default)]
@@ -135,6 +138,21 @@ pub struct Residual {
     pub rmse_n: f64,
     /// The same over all samples, reversals and what came before the first motion included, in N.
     pub rmse_all_n: f64,
+}
+
+/// A force that swings at one frequency in recording after recording while neither pressure nor length does.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Periodic {
+    /// Frequency, in Hz, to 0.1 Hz.
+    pub frequency_hz: f64,
+    /// Amplitude in the recording that has most of it, averaged over that recording, in N.
+    pub amplitude_n: f64,
+    /// Recordings that have it.
+    pub n_recordings: usize,
+    /// Recordings that are long enough to have it.
+    pub n_looked_at: usize,
 }
 
 /// How far a refit moves a free base parameter.

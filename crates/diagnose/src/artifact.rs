@@ -131,6 +131,7 @@ impl Diagnosis {
             regions: self.regions.clone(),
             effects: self.effects.clone(),
             empirical: self.empirical.clone(),
+            periodic: self.periodic,
             static_map: self.has_map(),
             fit: DiagnosisFit {
                 estimation: pair(&together(&agreement.base_estimation), &together(&agreement.estimation)),

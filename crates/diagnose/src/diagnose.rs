@@ -2,14 +2,17 @@
 
 use pam_artifact::ModelArtifact;
 use pam_artifact::diagnosis::{
-    Candidate, DiagnoseConfig, Empirical, Implausible, Isolability, NamedEffect, NextExperiment, Region, Verdict,
+    Candidate, DiagnoseConfig, Empirical, Implausible, Isolability, NamedEffect, NextExperiment, Periodic, Region,
+    Verdict,
 };
 use pam_artifact::model::EffectEntry;
 use pam_identification::evaluate::{evaluate, noise_floor_n};
 use pam_identification::prepare::{Prepared, begun_at_rest};
+use pam_identification::trace::traces_augmented;
 use pam_muscle::effects::{AugmentedModel, Effect, Term};
 use pam_muscle::force::ForceModel;
 use pam_recording::Recording;
+use rayon::prelude::*;
 
 use crate::best_law::Recordings;
 use crate::carried;
@@ -23,6 +26,7 @@ use crate::isolability::isolability;
 use crate::knocks::{self, InertialTransient};
 use crate::named::candidates;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
+use crate::periodic;
 use crate::places::regions;
 use crate::plausible::implausible;
 use crate::problem::DiagnosisProblem;
@@ -95,6 +99,8 @@ pub struct Diagnosis {
     pub sizes: Sizes,
     /// Whether, where nothing is named, what is written typically leaves more of what was fitted or held out than noise accounts for.
     pub typically_misses: bool,
+    /// What the force does at one frequency while no drive does.
+    pub periodic: Option<Periodic>,
     /// Base model refitted to the estimation recordings.
     pub base: ForceModel,
     /// Base model and effects.
@@ -249,9 +255,16 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let without_terms =
         discovery.as_ref().filter(|_| !written.effects.is_empty()).map(|discovery| discovery.without_terms.clone());
     let augmented = rig::beside(&rig, &written.model());
-    let typically_misses = written.effects.is_empty()
-        && Typical::of(&augmented, &estimation, &holdout, direction)?.is_missed(question.limits.matters_above_n);
-    let verdict = if verdict == Verdict::Consistent && typically_misses { Verdict::Unexplained } else { verdict };
+    let fitted_traces = traces_augmented(&estimation, &augmented, direction)?;
+    let held_traces = traces_augmented(&holdout, &augmented.elsewhere(), direction)?;
+    let typically_misses = written.effects.is_empty() && {
+        let (fitted, held) = ((&*estimation, &*fitted_traces), (&*holdout, &*held_traces));
+        Typical::of(augmented.base(), fitted, held)?.is_missed(question.limits.matters_above_n)
+    };
+    let periodic = periodic::periodic(fitted_traces.par_iter().chain(&held_traces));
+    let swings = periodic.is_some_and(|periodic| periodic::matters(&periodic, sizes.beyond_noise_n()));
+    let verdict =
+        if verdict == Verdict::Consistent && (typically_misses || swings) { Verdict::Unexplained } else { verdict };
     let mut regions =
         if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &question.paths()) };
     if let Some(knocks) = &knocks {
@@ -301,6 +314,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         next_experiment,
         sizes,
         typically_misses,
+        periodic,
         base: better_base(&estimation, &model, &found.base.state.model)?,
         augmented,
         kept_to_fitted,

@@ -35,6 +35,7 @@ pub mod next_experiment;
 pub mod normal;
 pub mod nuisance;
 mod own;
+mod periodic;
 mod places;
 mod plausible;
 pub mod problem;

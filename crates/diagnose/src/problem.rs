@@ -115,7 +115,7 @@ impl<'a> DiagnosisProblem<'a> {
         let before = left(&outcome.found);
         let mut least = f64::INFINITY;
         let mut best: Option<SearchOutcome> = None;
-        let matters_n = if outcome.sizes.limited { outcome.sizes.matters_n } else { outcome.sizes.sensors_n };
+        let matters_n = outcome.sizes.beyond_noise_n();
         let direction = self.model.direction;
         let without = &outcome.found.best.held_out;
         let steps = RestingStep::all(self.estimation, &outcome.track, direction, muscle, without)?;

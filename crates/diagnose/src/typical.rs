@@ -7,10 +7,8 @@
 use pam_identification::error::IdentifyError;
 use pam_identification::evaluate::noise_floor_n;
 use pam_identification::prepare::Prepared;
-use pam_identification::trace::{Trace, trace_augmented};
-use pam_muscle::direction::Thresholds;
-use pam_muscle::effects::AugmentedModel;
-use rayon::prelude::*;
+use pam_identification::trace::Trace;
+use pam_muscle::force::ForceModel;
 
 use crate::coverage::Coverage;
 use crate::turns;
@@ -31,29 +29,22 @@ pub(crate) struct Typical {
 }
 
 impl Typical {
-    /// What `model` leaves of the recordings under `thresholds`; of held-out ones, that they are followed `elsewhere`.
+    /// What `model` leaves of recordings that were fitted and of held-out ones, each with its traces.
     ///
     /// # Errors
-    /// [`IdentifyError`] where samples cannot be read back, or the model has no force for one.
+    /// [`IdentifyError`] where samples cannot be read back.
     pub(crate) fn of(
-        model: &AugmentedModel,
-        estimation: &[Prepared],
-        holdout: &[Prepared],
-        thresholds: Thresholds,
+        model: &ForceModel,
+        (estimation, fitted): (&[Prepared], &[Trace]),
+        (holdout, held): (&[Prepared], &[Trace]),
     ) -> Result<Self, IdentifyError> {
-        let traces = |recordings: &[Prepared], model: &AugmentedModel| -> Result<Vec<Trace>, IdentifyError> {
-            let each = recordings.par_iter().enumerate();
-            each.map(|(index, prepared)| trace_augmented(prepared, model, thresholds, index)).collect()
-        };
         let floor_n = |recordings: &[Prepared]| {
-            if recordings.is_empty() { Ok(0.0) } else { noise_floor_n(recordings, model.base()) }
+            if recordings.is_empty() { Ok(0.0) } else { noise_floor_n(recordings, model) }
         };
-        let fitted = traces(estimation, model)?;
-        let coverage = Coverage::of(&fitted);
-        let held: Vec<Trace> =
-            traces(holdout, &model.elsewhere())?.iter().map(|trace| coverage.within(trace)).collect();
+        let coverage = Coverage::of(fitted);
+        let held: Vec<Trace> = held.iter().map(|trace| coverage.within(trace)).collect();
         Ok(Self {
-            fitted_n: left_n(&fitted),
+            fitted_n: left_n(fitted),
             held_n: left_n(&held),
             sensors_n: (floor_n(estimation)?, floor_n(holdout)?),
         })
@@ -79,6 +70,8 @@ pub(crate) fn left_n(traces: &[Trace]) -> f64 {
 mod tests {
     use super::*;
     use crate::given::tests::{STROKES, artifact, recorded};
+    use pam_identification::trace::traces_augmented;
+    use pam_muscle::effects::AugmentedModel;
 
     fn typical(fitted_n: f64, held_n: f64) -> Typical {
         Typical { fitted_n, held_n, sensors_n: (0.5, 1.0) }
@@ -101,8 +94,13 @@ mod tests {
         let model = artifact();
         let written = AugmentedModel::new(model.force_model(), Vec::new());
         let is_missed = |gain: f64| {
-            let [fitted, held] = [1.0, gain].map(|gain| [recorded("strokes.csv", STROKES, &model, gain)]);
-            Typical::of(&written, &fitted, &held, model.direction).expect("residuals").is_missed(None)
+            let [fitted, held] = [1.0, gain].map(|gain| {
+                let prepared = [recorded("strokes.csv", STROKES, &model, gain)];
+                let traces = traces_augmented(&prepared, &written, model.direction).expect("traces");
+                (prepared, traces)
+            });
+            let typical = Typical::of(written.base(), (&fitted.0, &fitted.1), (&held.0, &held.1));
+            typical.expect("residuals").is_missed(None)
         };
         assert!(!is_missed(1.0) && is_missed(1.05));
     }

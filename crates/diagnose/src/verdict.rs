@@ -70,6 +70,11 @@ impl Sizes {
         Self { mismatch_n: self.mismatch_n.hypot(explained_n), ..self }
     }
 
+    /// Beyond which what is none of the muscle's matters, in N: the user's limit, or what the noise of the sensors leaves.
+    pub(crate) fn beyond_noise_n(&self) -> f64 {
+        if self.limited { self.matters_n } else { self.sensors_n }
+    }
+
     /// Share of the mismatch that the best hypothesis leaves, in mean squares, by what any model leaves.
     pub fn share_unexplained(&self) -> f64 {
         let excess = |rmse_n: f64| rmse_n.powi(2) - self.floor_square;

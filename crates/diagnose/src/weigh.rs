@@ -11,7 +11,7 @@ use crate::error::DiagnoseError;
 use crate::held_error::WORSE;
 use crate::nuisance::MAP_ID;
 use crate::typical::FOLLOWED_WITHIN;
-use crate::{held, words};
+use crate::{held, periodic, words};
 
 /// Times the sensors' noise that may be left of what is called explained.
 const EXPLAINED_WITHIN: f64 = 1.5;
@@ -38,6 +38,7 @@ impl Diagnosis {
                 held.map(|(without, with)| EmpiricalGain { rmse_without_n: without.rmse_n, rmse_with_n: with.rmse_n });
             self.statement += &discover::statement(empirical, !self.effects.is_empty(), numbers.with_map);
         }
+        self.tell_periodic();
         let left_n = together(&agreement.estimation).rmse_all_n;
         let sensors_n = self.sizes.sensors_n;
         if self.verdict == Verdict::Explained && left_n > EXPLAINED_WITHIN * sensors_n {
@@ -82,6 +83,26 @@ impl Diagnosis {
         Ok(())
     }
 
+    /// Whether the force does something at one frequency that matters.
+    fn swings(&self) -> bool {
+        self.periodic.is_some_and(|periodic| periodic::matters(&periodic, self.sizes.beyond_noise_n()))
+    }
+
+    /// Says what the force does at one frequency: where it matters beside the verdict, which is then explained in part at most, otherwise
+    /// beside what was noticed.
+    fn tell_periodic(&mut self) {
+        let Some(periodic) = &self.periodic else { return };
+        let words = periodic::words(periodic);
+        if self.swings() {
+            if self.verdict == Verdict::Explained {
+                self.verdict = Verdict::ExplainedInPart;
+            }
+            self.statement += &format!(" Besides, {words}.");
+        } else {
+            self.noticed.push(words);
+        }
+    }
+
     /// Whether recordings that nothing was fitted to are followed so well, over all samples, that what is left of the fitted ones
     /// without a name, and without a term that models it, does not matter. A smooth static map belongs to any muscle's model, as far
     /// as the form of eq. 11 accounts for it.
@@ -90,6 +111,7 @@ impl Diagnosis {
         let held = as_written.unwrap_or(&agreement.base_holdout).together.as_ref();
         self.verdict == Verdict::Unexplained
             && !self.typically_misses
+            && !self.swings()
             && self.effects.is_empty()
             && self.empirical.is_none()
             && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)

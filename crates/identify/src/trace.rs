@@ -6,6 +6,7 @@ use pam_muscle::direction::Thresholds;
 use pam_muscle::effects::AugmentedModel;
 use pam_muscle::force::ForceModel;
 use pam_recording::CHUNK_ROWS;
+use rayon::prelude::*;
 
 use crate::error::IdentifyError;
 use crate::predict::walk_augmented;
@@ -31,6 +32,19 @@ pub struct Trace {
     pub direction: Vec<f64>,
     /// Whether the direction is certain.
     pub settled: Vec<bool>,
+}
+
+/// Samples of every one of `recordings` beside what `model` with its effects says.
+///
+/// # Errors
+/// [`IdentifyError::Samples`] where samples cannot be read back.
+pub fn traces_augmented(
+    recordings: &[Prepared],
+    model: &AugmentedModel,
+    thresholds: Thresholds,
+) -> Result<Vec<Trace>, IdentifyError> {
+    let each = recordings.par_iter().enumerate();
+    each.map(|(index, prepared)| trace_augmented(prepared, model, thresholds, index)).collect()
 }
 
 /// Samples of `prepared` beside what `model` says.

@@ -2,7 +2,7 @@ use super::*;
 
 use std::sync::OnceLock;
 
-use pam_artifact::diagnosis::NamedEffect;
+use pam_artifact::diagnosis::{NamedEffect, Periodic};
 use pam_artifact::model::FitStatistics;
 
 use crate::elsewhere::KeptToFitted;
@@ -83,6 +83,25 @@ fn what_is_typically_missed_stays_unexplained_whatever_hold_outs_say() {
         base_leaves(agreement, 1.0);
     });
     assert_eq!(found.verdict, Verdict::Unexplained);
+}
+
+#[test]
+fn a_swing_that_matters_is_neither_consistent_nor_explained_and_a_small_one_is_noticed() {
+    let swings = |verdict, times: f64| {
+        weighed(|found, agreement| {
+            let amplitude_n = times * found.sizes.sensors_n * std::f64::consts::SQRT_2;
+            found.periodic = Some(Periodic { frequency_hz: 3.5, amplitude_n, n_recordings: 3, n_looked_at: 4 });
+            found.verdict = verdict;
+            base_leaves(agreement, 1.0);
+        })
+    };
+    let found = swings(Verdict::Unexplained, 1.1);
+    assert_eq!(found.verdict, Verdict::Unexplained);
+    assert!(found.statement.contains("at 3.5 Hz") && found.noticed.iter().all(|words| !words.contains("3.5 Hz")));
+    let small = swings(Verdict::Unexplained, 0.9);
+    assert_eq!(small.verdict, Verdict::Consistent);
+    assert!(!small.statement.contains("3.5 Hz") && small.noticed.iter().any(|words| words.contains("at 3.5 Hz")));
+    assert_eq!(swings(Verdict::Explained, 1.1).verdict, Verdict::ExplainedInPart);
 }
 
 #[test]
