@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 use pam_identification::trace::Trace;
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 /// Length of the windows that are averaged, in s: they tell frequencies apart by its inverse, and hold a pump that runs for some strokes.
 const WINDOW_S: f64 = 10.0;
@@ -10,25 +11,36 @@ const WINDOW_S: f64 = 10.0;
 const BIN_S: f64 = 0.02;
 /// Share of the bins of a window that may be without a sample.
 const EMPTY: f64 = 0.1;
-/// Lowest and highest frequency of a line, in inverses of [`WINDOW_S`]: 1 and 15 Hz. What is slower drifts, and what is faster is averaged
+/// Lowest and highest frequency of a line of the residual, in inverses of [`WINDOW_S`]: 1 and 15 Hz. What is slower drifts, and what is faster is averaged
 /// away, or noise.
 const LINES: (usize, usize) = (10, 150);
 /// Frequencies to either side that a line is compared with, and how many next to it are its own flanks.
 const BESIDE: usize = 8;
 /// See [`BESIDE`].
 const FLANK: usize = 2;
+/// Times the mean square beside it from which on the residual has a line: noise passes it by chance once in some thousand frequencies of a
+/// recording, and not in half of the recordings at the same.
+const LINE: f64 = 12.0;
+/// The same of a drive.
+const DRIVE: f64 = 6.0;
+/// Lowest frequency of a line of a drive, in inverses of [`WINDOW_S`]; the multiples of what is slower lie so close that none of them stands out.
+const SLOWEST: usize = 4;
+/// By how much a frequency of a drive is off at most, in Hz; the frequency of a multiple is, so many times.
+const OFF_HZ: f64 = 0.01;
 /// Share of the rate of the bins up to which a frequency is seen.
 const SEEN: f64 = 0.4;
 
 /// Spectrum of one recording.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Spectrum {
-    /// Amplitude of the residual at every frequency from 1 to 15 Hz, in N, averaged over the recording.
+    /// Amplitude of the residual at every frequency that is compared, in N, averaged over the recording.
     amplitude_n: Vec<f64>,
     /// Mean square of the residual there over the median of those beside.
     residual: Vec<f64>,
     /// The larger of pressure's and length's.
     drives: Vec<f64>,
+    /// Frequencies of the lines of pressure and length, in Hz: a friction that turns over with them has lines at their multiples.
+    drives_hz: Vec<f64>,
 }
 
 impl Spectrum {
@@ -50,27 +62,62 @@ impl Spectrum {
             (windows.ncols() > 0).then(|| squares(&waves, &windows))
         };
         let residual = squares(&residual_n)?;
-        let [pressure, length] = [&trace.pressure_pa, &trace.length_m].map(|values| squares(values));
-        let drives = beside(&pressure?).into_iter().zip(beside(&length?)).map(|(one, other)| one.max(other)).collect();
-        let amplitude_n = residual[BESIDE..residual.len() - BESIDE].iter().map(|square| square.sqrt()).collect();
-        Some(Self { amplitude_n, residual: beside(&residual), drives })
+        let (pressure, length) = (squares(&trace.pressure_pa)?, squares(&trace.length_m)?);
+        let over = [&residual, &pressure, &length].map(|squares| beside(squares));
+        let of_drives = [(&pressure, &over[1]), (&length, &over[2])];
+        let larger = over[1].iter().zip(&over[2]).map(|(one, other)| one.max(*other));
+        Some(Self {
+            amplitude_n: residual.iter().map(|square| square.sqrt()).collect(),
+            drives: larger.collect(),
+            drives_hz: of_drives.into_iter().flat_map(|(squares, over)| lines_hz(squares, over)).collect(),
+            residual: over.into_iter().next().unwrap_or_default(),
+        })
     }
 
-    /// Frequencies that it has values at, in Hz.
-    pub(super) fn frequencies_hz() -> impl Iterator<Item = f64> {
-        (LINES.0..=LINES.1).map(|k| k as f64 / WINDOW_S)
+    /// Frequencies at which the residual may have a line, in inverses of [`WINDOW_S`].
+    pub(super) fn frequencies() -> RangeInclusive<usize> {
+        LINES.0..=LINES.1
     }
 
-    /// Amplitude of the residual in N at frequency `at`, where it swings there by more than `line` times what it does beside, in mean
-    /// squares, and no drive by more than `drive` times; none beyond the highest.
-    pub(super) fn line_n(&self, at: usize, line: f64, drive: f64) -> Option<f64> {
-        (*self.residual.get(at)? > line && self.drives[at] < drive).then(|| self.amplitude_n[at])
+    /// Amplitude of the residual in N at the frequency `k`, where it swings there by far more than it does beside, and no drive does,
+    /// neither there nor at a frequency of which it is a multiple.
+    pub(super) fn line_n(&self, k: usize) -> Option<f64> {
+        let at = k - 1;
+        let is_multiple = |drive_hz: &f64| {
+            let times = (hz(k) / drive_hz).round();
+            (hz(k) - times * drive_hz).abs() <= hz(1) + OFF_HZ * times
+        };
+        let is_top = is_top(&self.amplitude_n, at);
+        let is_line = is_top && self.residual[at] > LINE && self.drives[at] < DRIVE;
+        (is_line && !self.drives_hz.iter().any(is_multiple)).then(|| self.amplitude_n[at])
     }
 }
 
-/// Frequencies from the lowest that a line is compared with to the highest, in inverses of [`WINDOW_S`].
-fn compared() -> std::ops::RangeInclusive<usize> {
-    LINES.0 - BESIDE..=LINES.1 + BESIDE
+/// A frequency, in Hz.
+pub(super) fn hz(k: usize) -> f64 {
+    k as f64 / WINDOW_S
+}
+
+/// Frequencies up to the highest that a line is compared with, in inverses of [`WINDOW_S`].
+fn compared() -> RangeInclusive<usize> {
+    1..=LINES.1 + BESIDE
+}
+
+/// Whether neither of the values next to that `at` is larger.
+fn is_top(values: &[f64], at: usize) -> bool {
+    values[at] >= values[at - 1] && values[at] >= values[at + 1]
+}
+
+/// Frequencies of the lines of a drive, in Hz, from the amplitudes next to the largest: for this taper those of a line between two of them,
+/// at a share d of the step from the larger, are as 1 + d to 2 - d.
+fn lines_hz(squares: &[f64], over: &[f64]) -> Vec<f64> {
+    let is_line = |&at: &usize| over[at] > DRIVE && is_top(squares, at);
+    let between = |at: usize| {
+        let [below, own, above] = [at - 1, at, at + 1].map(|at| squares[at].sqrt());
+        let share = |next: f64| ((2.0 * next - own) / (next + own)).clamp(0.0, 0.5);
+        hz(at + 1) + hz(1) * if above >= below { share(above) } else { -share(below) }
+    };
+    (SLOWEST - 1..squares.len() - 1).filter(is_line).map(between).collect()
 }
 
 /// Cosines, and sines below, of every frequency in windows of `n_bins`, tapered so that a line has narrow flanks and an amplitude of one
@@ -137,14 +184,14 @@ fn squares(waves: &DMatrix<f64>, windows: &DMatrix<f64>) -> Vec<f64> {
 /// Every square that is compared over the median of those beside its flanks.
 fn beside(squares: &[f64]) -> Vec<f64> {
     let ratio = |at: usize| {
-        let near = at - BESIDE..=at + BESIDE;
+        let near = at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(squares.len());
         let mut others: Vec<f64> =
             near.filter(|other| other.abs_diff(at) > FLANK).map(|other| squares[other]).collect();
         let middle = others.len() / 2;
         let median = *others.select_nth_unstable_by(middle, f64::total_cmp).1;
         squares[at] / median.max(f64::MIN_POSITIVE)
     };
-    (BESIDE..squares.len() - BESIDE).map(ratio).collect()
+    (0..squares.len()).map(ratio).collect()
 }
 
 #[cfg(test)]
@@ -152,23 +199,40 @@ mod tests {
     use super::*;
     use crate::periodic::tests::{PERIOD_S, swinging};
 
-    fn at_hz(hz: f64) -> usize {
-        Spectrum::frequencies_hz().position(|other_hz| (other_hz - hz).abs() < 1e-9).expect("a frequency")
+    /// Frequencies of the lines of the residual, in Hz.
+    fn lines(spectrum: &Spectrum) -> Vec<f64> {
+        Spectrum::frequencies().filter(|&k| spectrum.line_n(k).is_some()).map(hz).collect()
     }
 
     #[test]
     fn a_sine_has_its_amplitude_at_its_frequency_and_no_line_elsewhere() {
         let spectrum = Spectrum::of(&swinging(30.0, 3.5, 2.0, 0.0)).expect("a spectrum");
-        let amplitude_n = spectrum.line_n(at_hz(3.5), 12.0, 6.0).expect("a line");
+        let amplitude_n = spectrum.line_n(35).expect("a line");
         assert!((amplitude_n - 2.0).abs() < 0.1, "{amplitude_n}");
-        let elsewhere = (0..spectrum.residual.len()).filter(|&at| at.abs_diff(at_hz(3.5)) > FLANK);
-        assert_eq!(elsewhere.filter(|&at| spectrum.line_n(at, 12.0, 6.0).is_some()).count(), 0);
+        assert!(lines(&spectrum).iter().all(|line_hz| (line_hz - 3.5).abs() < 0.11), "{:?}", lines(&spectrum));
     }
 
     #[test]
     fn what_the_pressure_does_as_well_is_no_line_of_the_residual() {
         let spectrum = Spectrum::of(&swinging(30.0, 3.5, 2.0, 1e3)).expect("a spectrum");
-        assert_eq!(spectrum.line_n(at_hz(3.5), 12.0, 6.0), None);
+        assert_eq!(lines(&spectrum), Vec::<f64>::new());
+    }
+
+    #[test]
+    fn friction_that_turns_over_with_a_drive_has_lines_at_its_multiples_that_are_none() {
+        for drive_hz in [0.45, 0.7, 1.03, 1.37, 2.0] {
+            let mut trace = swinging(30.0, 9.0, 0.0, 0.0);
+            let turn = |time_s: f64| TAU * drive_hz * time_s;
+            for at in 0..trace.time_s.len() {
+                trace.length_m[at] += 5e-3 * turn(trace.time_s[at]).sin();
+                trace.force_n[at] +=
+                    4.0 * turn(trace.time_s[at]).cos().signum() + 2.0 * turn(trace.time_s[at]).sin().powi(2);
+            }
+            let spectrum = Spectrum::of(&trace).expect("a spectrum");
+            assert_eq!(lines(&spectrum), Vec::<f64>::new(), "{drive_hz} Hz");
+            let found_hz = &spectrum.drives_hz;
+            assert!(found_hz.iter().any(|found_hz| (found_hz - drive_hz).abs() < OFF_HZ), "{drive_hz}: {found_hz:?}");
+        }
     }
 
     #[test]
