@@ -19,7 +19,7 @@ const BESIDE: usize = 8;
 /// See [`BESIDE`].
 const FLANK: usize = 2;
 /// Times the mean square beside it from which on the residual has a line: noise passes it by chance once in some thousand frequencies of a
-/// recording, and not in half of the recordings at the same.
+/// recording, and seldom in a third of the recordings at the same.
 const LINE: f64 = 12.0;
 /// The same of a drive.
 const DRIVE: f64 = 6.0;
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn friction_that_turns_over_with_a_drive_has_lines_at_its_multiples_that_are_none() {
-        for drive_hz in [0.45, 0.7, 1.03, 1.37, 2.0] {
+        for drive_hz in [0.2, 0.3, 0.38, 0.45, 0.55, 0.7, 1.03, 1.37, 2.0] {
             let mut trace = swinging(30.0, 9.0, 0.0, 0.0);
             let turn = |time_s: f64| TAU * drive_hz * time_s;
             for at in 0..trace.time_s.len() {
@@ -231,7 +231,8 @@ mod tests {
             let spectrum = Spectrum::of(&trace).expect("a spectrum");
             assert_eq!(lines(&spectrum), Vec::<f64>::new(), "{drive_hz} Hz");
             let found_hz = &spectrum.drives_hz;
-            assert!(found_hz.iter().any(|found_hz| (found_hz - drive_hz).abs() < OFF_HZ), "{drive_hz}: {found_hz:?}");
+            let is_found = found_hz.iter().any(|found_hz| (found_hz - drive_hz).abs() < OFF_HZ);
+            assert!(is_found || drive_hz < hz(SLOWEST), "{drive_hz}: {found_hz:?}");
         }
     }
 
