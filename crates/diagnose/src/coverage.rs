@@ -47,16 +47,7 @@ impl Coverage {
     pub(crate) fn within(&self, trace: &Trace) -> Trace {
         let kept: Vec<usize> =
             (0..trace.time_s.len()).filter(|&at| self.holds(trace.pressure_pa[at], trace.length_m[at])).collect();
-        let of = |values: &[f64]| kept.iter().map(|&at| values[at]).collect::<Vec<f64>>();
-        Trace {
-            time_s: of(&trace.time_s),
-            pressure_pa: of(&trace.pressure_pa),
-            length_m: of(&trace.length_m),
-            force_n: of(&trace.force_n),
-            model_n: of(&trace.model_n),
-            direction: of(&trace.direction),
-            settled: kept.iter().map(|&at| trace.settled[at]).collect(),
-        }
+        trace.only(&kept)
     }
 
     fn cell(&self, pressure_pa: f64, length_m: f64) -> Option<(usize, usize)> {

@@ -4,8 +4,8 @@
 //! effect and no term can foretell it, and a root mean square hides it beside reversals. In a spectrum it stands alone. What comes from
 //! the drives is there in pressure or length as well, or at multiples of what is.
 //!
-//! Of 530 cases of other benches that were looked at all ten with a pump are found, and none of the others. Each constant halved and doubled,
-//! in a study of the same rules: with half of what makes a line one more case has one, and with twice as much one pump less is found; with half of
+//! In a study of these rules on 530 cases of other benches that were looked at all ten with a pump are found, and none of the others. Each
+//! constant halved and doubled: with half of what makes a line one more case has one, and with twice as much one pump less is found; with half of
 //! what a drive may have, one less; in a sixth of the recordings in place of a third the same are found, in two thirds three less; with
 //! half of what matters four more cases have a line, which is hum, and with twice as much two pumps less are found; with windows of 5 s one less, and with
 //! windows of 20 s two less, and one more case has a line.
@@ -74,8 +74,9 @@ pub(super) mod tests {
             length_m: time_s.iter().map(|_| 0.25 + 1e-5 * noise()).collect(),
             force_n: time_s.iter().map(|t| 100.0 + amplitude_n * swing(t) + 0.5 * noise()).collect(),
             model_n: vec![100.0; time_s.len()],
+            direction: vec![1.0; time_s.len()],
+            settled: vec![true; time_s.len()],
             time_s,
-            ..Trace::default()
         }
     }
 

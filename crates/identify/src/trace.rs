@@ -34,6 +34,23 @@ pub struct Trace {
     pub settled: Vec<bool>,
 }
 
+impl Trace {
+    /// The samples `kept`, in that order.
+    #[must_use]
+    pub fn only(&self, kept: &[usize]) -> Self {
+        let of = |values: &[f64]| kept.iter().map(|&at| values[at]).collect::<Vec<f64>>();
+        Self {
+            time_s: of(&self.time_s),
+            pressure_pa: of(&self.pressure_pa),
+            length_m: of(&self.length_m),
+            force_n: of(&self.force_n),
+            model_n: of(&self.model_n),
+            direction: of(&self.direction),
+            settled: kept.iter().map(|&at| self.settled[at]).collect(),
+        }
+    }
+}
+
 /// Samples of every one of `recordings` beside what `model` with its effects says.
 ///
 /// # Errors
