@@ -372,30 +372,39 @@ impl ProjectedResidual {
 
     fn products(&self, block: Range<usize>, features: &[&Feature], width: usize) -> DMatrix<f64> {
         let q = self.n_directions;
-        let mut sums = vec![0.0; width * width];
-        let mut row: Vec<(usize, f64)> = Vec::with_capacity(q + 4 * features.len() + 1);
-        for at in block.filter(|&at| self.counted[at]) {
-            row.clear();
-            let dense = &self.rows[at * (q + 1)..(at + 1) * (q + 1)];
-            row.extend(dense[..q].iter().copied().enumerate());
-            let mut offset = q;
+        let dense = |at: usize| &self.rows[at * (q + 1)..(at + 1) * (q + 1)];
+        let counted: Vec<usize> = block.filter(|&at| self.counted[at]).collect();
+        let rows = counted.iter().flat_map(|&at| dense(at)).copied();
+        let rows = DMatrix::from_iterator(q + 1, counted.len(), rows);
+        let of_dense = &rows * rows.transpose();
+        // Of the functions, of which few are anything at an instant, with the dense columns and among themselves.
+        let n = width - q - 1;
+        let (mut crossed, mut own) = (vec![0.0; n * (q + 1)], DMatrix::zeros(n, n));
+        let mut here: Vec<(usize, f64)> = Vec::with_capacity(4 * features.len());
+        for &at in &counted {
+            here.clear();
+            let mut offset = 0;
             for feature in features {
-                row.extend(
-                    feature.entries[at]
-                        .iter()
-                        .filter(|(_, value)| *value != 0.0)
-                        .map(|&(index, value)| (offset + index as usize, value)),
-                );
+                let entries = feature.entries[at].iter().filter(|(_, value)| *value != 0.0);
+                here.extend(entries.map(|&(index, value)| (offset + index as usize, value)));
                 offset += feature.n;
             }
-            row.push((width - 1, dense[q]));
-            for (position, &(i, left)) in row.iter().enumerate() {
-                for &(j, right) in &row[position..] {
-                    sums[i.min(j) * width + i.max(j)] += left * right;
+            for (position, &(i, left)) in here.iter().enumerate() {
+                let sums = &mut crossed[i * (q + 1)..(i + 1) * (q + 1)];
+                sums.iter_mut().zip(dense(at)).for_each(|(sum, column)| *sum += left * column);
+                for &(j, right) in &here[position..] {
+                    own[(i.min(j), i.max(j))] += left * right;
                 }
             }
         }
-        let mut products = DMatrix::from_row_slice(width, width, &sums);
+        let crossed = DMatrix::from_vec(q + 1, n, crossed);
+        let mut products = DMatrix::zeros(width, width);
+        products.view_mut((0, 0), (q, q)).copy_from(&of_dense.view((0, 0), (q, q)));
+        products.view_mut((0, q), (q, n)).copy_from(&crossed.rows(0, q));
+        products.view_mut((q, q), (n, n)).copy_from(&own);
+        products.view_mut((0, width - 1), (q, 1)).copy_from(&of_dense.view((0, q), (q, 1)));
+        products.view_mut((q, width - 1), (n, 1)).tr_copy_from(&crossed.row(q));
+        products[(width - 1, width - 1)] = of_dense[(q, q)];
         products.fill_lower_triangle_with_upper_triangle();
         products
     }

@@ -9,6 +9,8 @@
 //! ed., 16.6). Samples that are not counted take no part, and nothing is correlated across a gap or from one recording to
 //! the next. Channels are taken less their mean in each recording.
 
+use rayon::prelude::*;
+
 use super::samples::Samples;
 use crate::plot::Timeline;
 
@@ -62,7 +64,7 @@ pub(super) fn autocorrelation<'a>(
     if !(square > 0.0 && n > 1.0) {
         return None;
     }
-    let value = (0..=LAGS).map(|lag| normalized(sums(lag), square / n)).collect();
+    let value = (0..=LAGS).into_par_iter().map(|lag| normalized(sums(lag), square / n)).collect();
     Some(Correlation { lag_s: (0..=LAGS).map(|lag| lag as f64 * lag_s).collect(), value, band: Z / n.sqrt() })
 }
 
@@ -80,20 +82,19 @@ pub(super) fn cross_correlation<'a>(
     if !(scale > 0.0 && scale.is_finite() && n > 1.0) {
         return None;
     }
-    let mut lags = Vec::with_capacity(2 * LAGS + 1);
-    for lag in (1..=LAGS).rev() {
-        lags.push((-(lag as f64) * lag_s, of(lag, |stretch| (&stretch.residual, &stretch.channel))));
-    }
-    for lag in 0..=LAGS {
-        lags.push((lag as f64 * lag_s, of(lag, |stretch| (&stretch.channel, &stretch.residual))));
-    }
+    let preceding = |lag: usize| (-(lag as f64) * lag_s, of(lag, |stretch| (&stretch.residual, &stretch.channel)));
+    let following = |lag: usize| (lag as f64 * lag_s, of(lag, |stretch| (&stretch.channel, &stretch.residual)));
+    let mut lags: Vec<(f64, (f64, f64))> = (0..LAGS).into_par_iter().map(|later| preceding(LAGS - later)).collect();
+    lags.par_extend((0..=LAGS).into_par_iter().map(following));
     let step = stretches.iter().map(|stretch| stretch.step).max().unwrap_or(1) as f64;
-    let mut p = 1.0;
-    for lag in 1..=LAGS {
+    let both = |lag: usize| {
         let e = normalized(of(lag, |stretch| (&stretch.residual, &stretch.residual)), residuals / n);
         let u = normalized(of(lag, |stretch| (&stretch.channel, &stretch.channel)), channels / n_channel);
-        p += 2.0 * step * e * u;
-    }
+        e * u
+    };
+    // One after the other, so that the sum is the same with any number of threads.
+    let both: Vec<f64> = (1..=LAGS).into_par_iter().map(both).collect();
+    let p = 1.0 + 2.0 * step * both.iter().sum::<f64>();
     Some(Correlation {
         lag_s: lags.iter().map(|(lag_s, _)| *lag_s).collect(),
         value: lags.iter().map(|(_, sums)| normalized(*sums, scale)).collect(),
@@ -105,29 +106,27 @@ fn normalized((sum, n): (f64, f64), scale: f64) -> f64 {
     if n > 0.0 { sum / n / scale } else { f64::NAN }
 }
 
-/// Sum of products of the first with the second of `pick` a lag later, and how many there are; what does not count is zero.
-fn sums(stretches: &[Stretch], lag: usize, pick: impl Fn(&Stretch) -> (&[f64], &[f64])) -> (f64, f64) {
-    let mut total = (0.0, 0.0);
-    for stretch in stretches {
-        let shift = lag * stretch.step;
-        let (first, second) = pick(stretch);
-        if shift >= first.len() {
-            continue;
+/// Sum of products of the first with the second of `pick` a lag later, and of how many that is; what does not count is zero.
+fn sums(stretches: &[Stretch], lag: usize, pick: fn(&Stretch) -> (&[f64], &[f64])) -> (f64, f64) {
+    let of = |pick: fn(&Stretch) -> (&[f64], &[f64])| -> f64 {
+        stretches.iter().map(|stretch| product(pick(stretch), lag * stretch.step)).sum()
+    };
+    (of(pick), of(|stretch| (&stretch.counts, &stretch.counts)))
+}
+
+/// Sum of products of the first with the second so many rows later, in lanes: one sum after the other would wait for each.
+fn product((first, second): (&[f64], &[f64]), later: usize) -> f64 {
+    let Some(second) = second.get(later..) else { return 0.0 };
+    let (first, first_rest) = first[..second.len()].as_chunks::<LANES>();
+    let (second, second_rest) = second.as_chunks::<LANES>();
+    let mut lanes = [0.0; LANES];
+    for (first, second) in first.iter().zip(second) {
+        for lane in 0..LANES {
+            lanes[lane] += first[lane] * second[lane];
         }
-        let rows = first.len() - shift;
-        let (counts, later_counts) = (&stretch.counts[..rows], &stretch.counts[shift..]);
-        let (first, second) = (&first[..rows], &second[shift..]);
-        // In lanes: one sum after the other would wait for each.
-        let (mut products, mut numbers) = ([0.0; LANES], [0.0; LANES]);
-        for row in 0..rows {
-            let both = counts[row] * later_counts[row];
-            products[row % LANES] += both * first[row] * second[row];
-            numbers[row % LANES] += both;
-        }
-        total.0 += products.iter().sum::<f64>();
-        total.1 += numbers.iter().sum::<f64>();
     }
-    total
+    let rest: f64 = first_rest.iter().zip(second_rest).map(|(first, second)| first * second).sum();
+    lanes.iter().sum::<f64>() + rest
 }
 
 /// Lag from one to the next in s, and the stretches; none where no recording has a clock.
