@@ -84,8 +84,10 @@ impl Normal {
             }
             let mut summary = Summary::new(n);
             for first in (0..range.len()).step_by(BLOCK_ROWS) {
-                let some = rows.rows(first, BLOCK_ROWS.min(range.len() - first));
-                summary.fold(&mut Vec::from(some.into_owned().data), some.nrows());
+                let some = first..range.len().min(first + BLOCK_ROWS);
+                let columns: Vec<&[f64]> =
+                    rows.as_slice().chunks_exact(range.len()).map(|column| &column[some.clone()]).collect();
+                summary.fold(&mut columns.concat(), some.len());
             }
             (rows, summary)
         };

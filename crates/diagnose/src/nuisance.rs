@@ -107,8 +107,8 @@ impl Nuisance {
     pub(crate) fn blocks(&self, listed: &[usize], ranges: &[Range<usize>]) -> Arc<Vec<NuisanceBlock>> {
         self.blocks.of(listed, ranges, || {
             let block = |range: &Range<usize>| {
-                let rows = listed[range.clone()].iter().flat_map(|&at| self.row(at)).copied();
-                let rows = DMatrix::from_iterator(self.n, range.len(), rows);
+                let rows: Vec<&[f64]> = listed[range.clone()].iter().map(|&at| self.row(at)).collect();
+                let rows = DMatrix::from_vec(self.n, range.len(), rows.concat());
                 NuisanceBlock { products: &rows * rows.transpose(), rows: Arc::new(rows) }
             };
             ranges.par_iter().map(block).collect()
@@ -117,7 +117,7 @@ impl Nuisance {
 
     /// What `coefficients` add at every one of `n_instants`, in N.
     pub fn force_n(&self, coefficients: &[f64], n_instants: usize) -> Vec<f64> {
-        (0..n_instants).map(|at| self.force_at_n(at, coefficients)).collect()
+        (0..n_instants).into_par_iter().map(|at| self.force_at_n(at, coefficients)).collect()
     }
 
     /// The same at instant `at` alone.
@@ -132,11 +132,12 @@ impl Nuisance {
             columns.into_par_iter().map(|column| normalized(column, counted)).unzip();
         let (before, more, n_instants) = (self.n, columns.len(), counted.len());
         let n = before + more;
-        let mut rows = Vec::with_capacity(n * n_instants);
-        for at in 0..n_instants {
-            rows.extend_from_slice(&self.rows[at * before..(at + 1) * before]);
-            rows.extend(columns.iter().map(|column| column[at]));
-        }
+        let mut rows = vec![0.0; n * n_instants];
+        rows.par_chunks_exact_mut(n.max(1)).enumerate().for_each(|(at, row)| {
+            let (known, new) = row.split_at_mut(before);
+            known.copy_from_slice(self.row(at));
+            new.iter_mut().zip(&columns).for_each(|(value, column)| *value = column[at]);
+        });
         self.behind(group, rows, &scales, precision)
     }
 
@@ -234,12 +235,13 @@ impl Nuisance {
         let before = self.n;
         let n = before + more;
         let mut rows = vec![0.0; n * entries.len()];
-        for (at, (row, entries)) in rows.chunks_exact_mut(n).zip(&entries).enumerate() {
-            row[..before].copy_from_slice(self.row(at));
+        rows.par_chunks_exact_mut(n.max(1)).zip(&entries).enumerate().for_each(|(at, (row, entries))| {
+            let (known, new) = row.split_at_mut(before);
+            known.copy_from_slice(self.row(at));
             for &(column, value) in entries {
-                row[before + column] += value * scales[column];
+                new[column] += value * scales[column];
             }
-        }
+        });
         self.behind(group, rows, &scales, LOOSE)
     }
 

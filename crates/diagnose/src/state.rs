@@ -247,8 +247,8 @@ impl<'a> Setting<'a> {
         let sheet = self.ground().sheet(&guesses, model);
         let (listed, blocks) = self.listed();
         let width = sheet.width;
-        let of_listed = listed.iter().flat_map(|&at| &sheet.columns[at * width..(at + 1) * width]);
-        let rows = Rows { columns: of_listed.copied().collect(), listed, blocks, width, events: sheet.events.clone() };
+        let of_listed: Vec<&[f64]> = listed.iter().map(|&at| &sheet.columns[at * width..(at + 1) * width]).collect();
+        let rows = Rows { columns: of_listed.concat(), listed, blocks, width, events: sheet.events.clone() };
         let (normal, fit, read) = self.settled(&guesses, rows, near, model, was)?;
         let model = self.model(&fit);
         let nuisance_n = self.nuisance.force_n(&fit.nuisances, self.track.n());

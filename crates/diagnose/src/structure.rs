@@ -374,8 +374,8 @@ impl ProjectedResidual {
         let q = self.n_directions;
         let dense = |at: usize| &self.rows[at * (q + 1)..(at + 1) * (q + 1)];
         let counted: Vec<usize> = block.filter(|&at| self.counted[at]).collect();
-        let rows = counted.iter().flat_map(|&at| dense(at)).copied();
-        let rows = DMatrix::from_iterator(q + 1, counted.len(), rows);
+        let rows: Vec<&[f64]> = counted.iter().map(|&at| dense(at)).collect();
+        let rows = DMatrix::from_vec(q + 1, counted.len(), rows.concat());
         let of_dense = &rows * rows.transpose();
         // Of the functions, of which few are anything at an instant, with the dense columns and among themselves.
         let n = width - q - 1;

@@ -78,7 +78,7 @@ impl<'a> Field<'a> {
             .iter()
             .map(|instants| {
                 let of = |at: &usize| &remainder.rows[at * width..(at + 1) * width];
-                DMatrix::from_iterator(width, instants.len(), instants.iter().flat_map(of).copied())
+                DMatrix::from_vec(width, instants.len(), instants.iter().map(of).collect::<Vec<&[f64]>>().concat())
             })
             .collect();
         let products: Vec<DMatrix<f64>> = rows.iter().map(|rows| rows * rows.transpose()).collect();
@@ -169,8 +169,16 @@ impl<'a> Field<'a> {
     /// Mean squares of every block under a fit to all but its fold.
     pub(super) fn held_out(&self, products: &Products) -> Option<HeldOut> {
         let fold_of = &self.setting.track.fold_of_block;
+        // What each fold adds is summed once.
+        let of_folds = |blocks: &[DMatrix<f64>]| -> Vec<DMatrix<f64>> {
+            (0..FOLDS).map(|fold| sum(blocks, |block| f64::from(fold_of[block] == fold))).collect()
+        };
+        let (cross, own) = (of_folds(&products.cross), of_folds(&products.own));
         let folds: Option<Vec<DVector<f64>>> = (0..FOLDS)
-            .map(|fold| self.solve(&self.folds[fold], products, |block| f64::from(fold_of[block] != fold)))
+            .map(|fold| {
+                let others = |of: &[DMatrix<f64>]| sum(of, |other| f64::from(other != fold));
+                self.solved(&self.folds[fold], &others(&cross), others(&own))
+            })
             .collect();
         let folds = folds?;
         let left = |block| self.left(products, block, &folds[fold_of[block]]);
@@ -211,8 +219,12 @@ impl<'a> Field<'a> {
     /// Coefficients of the tangent space, -1 for the residual, and those of the curve, fitted to every block so many `times`, over
     /// which the tangent space is `tangent`.
     fn solve(&self, tangent: &Tangent, products: &Products, times: impl Fn(usize) -> f64) -> Option<DVector<f64>> {
+        self.solved(tangent, &sum(&products.cross, &times), sum(&products.own, &times))
+    }
+
+    /// The same from sums over the blocks of the curve's products with tangent space and residual, and with itself.
+    fn solved(&self, tangent: &Tangent, cross: &DMatrix<f64>, mut own: DMatrix<f64>) -> Option<DVector<f64>> {
         let q = self.ridges.len();
-        let (cross, mut own) = (sum(&products.cross, &times), sum(&products.own, &times));
         let k = own.ncols();
         (0..k).for_each(|index| own[(index, index)] += self.ridge);
         // Without what the tangent space takes of the curve.
