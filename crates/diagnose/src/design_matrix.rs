@@ -26,6 +26,12 @@ pub struct DesignMatrix {
     pub events: Vec<usize>,
 }
 
+/// Rows `instants` of `table`, row-major with so many columns, one after the other.
+pub(crate) fn rows_of(table: &[f64], columns: usize, instants: &[usize]) -> Vec<f64> {
+    let rows: Vec<&[f64]> = instants.iter().map(|&at| &table[at * columns..(at + 1) * columns]).collect();
+    rows.concat()
+}
+
 impl DesignMatrix {
     /// Force at instant `at` that `weights` of the columns make, in N.
     pub fn force_n(&self, at: usize, weights: &[f64]) -> f64 {

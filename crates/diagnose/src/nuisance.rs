@@ -25,6 +25,7 @@ use pam_muscle::force::rubber_friction::normal_force_n;
 use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;
+use crate::design_matrix::rows_of;
 use crate::structure;
 use crate::track::Track;
 use remembered::{NuisanceBlock, RememberedBlocks};
@@ -107,8 +108,7 @@ impl Nuisance {
     pub(crate) fn blocks(&self, listed: &[usize], ranges: &[Range<usize>]) -> Arc<Vec<NuisanceBlock>> {
         self.blocks.of(listed, ranges, || {
             let block = |range: &Range<usize>| {
-                let rows: Vec<&[f64]> = listed[range.clone()].iter().map(|&at| self.row(at)).collect();
-                let rows = DMatrix::from_vec(self.n, range.len(), rows.concat());
+                let rows = DMatrix::from_vec(self.n, range.len(), rows_of(&self.rows, self.n, &listed[range.clone()]));
                 NuisanceBlock { products: &rows * rows.transpose(), rows: Arc::new(rows) }
             };
             ranges.par_iter().map(block).collect()
@@ -130,12 +130,7 @@ impl Nuisance {
     pub fn with(&self, group: Group, columns: Vec<Vec<f64>>, counted: &[bool], precision: f64) -> Self {
         let (columns, scales): (Vec<Vec<f64>>, Vec<f64>) =
             columns.into_par_iter().map(|column| normalized(column, counted)).unzip();
-        let (before, more, n_instants) = (self.n, columns.len(), counted.len());
-        let n = before + more;
-        let mut rows = vec![0.0; n * n_instants];
-        rows.par_chunks_exact_mut(n.max(1)).enumerate().for_each(|(at, row)| {
-            let (known, new) = row.split_at_mut(before);
-            known.copy_from_slice(self.row(at));
+        let rows = self.rows_with(columns.len(), counted.len(), |at, new| {
             new.iter_mut().zip(&columns).for_each(|(value, column)| *value = column[at]);
         });
         self.behind(group, rows, &scales, precision)
@@ -232,17 +227,24 @@ impl Nuisance {
             }
         }
         let scales: Vec<f64> = sums.into_iter().map(|(squares, count)| scale(squares, count)).collect();
-        let before = self.n;
-        let n = before + more;
-        let mut rows = vec![0.0; n * entries.len()];
-        rows.par_chunks_exact_mut(n.max(1)).zip(&entries).enumerate().for_each(|(at, (row, entries))| {
-            let (known, new) = row.split_at_mut(before);
-            known.copy_from_slice(self.row(at));
-            for &(column, value) in entries {
+        let rows = self.rows_with(more, entries.len(), |at, new| {
+            for &(column, value) in &entries[at] {
                 new[column] += value * scales[column];
             }
         });
         self.behind(group, rows, &scales, LOOSE)
+    }
+
+    /// The rows of all instants with so many columns more, which `fill` has of each; they come to it as zeros.
+    fn rows_with(&self, more: usize, n_instants: usize, fill: impl Fn(usize, &mut [f64]) + Sync) -> Vec<f64> {
+        let n = self.n + more;
+        let mut rows = vec![0.0; n * n_instants];
+        rows.par_chunks_exact_mut(n.max(1)).enumerate().for_each(|(at, row)| {
+            let (known, new) = row.split_at_mut(self.n);
+            known.copy_from_slice(self.row(at));
+            fill(at, new);
+        });
+        rows
     }
 
     /// `rows`, of which those of `self` are the first columns, with the `scales` and the `precision` of the others.

@@ -8,7 +8,7 @@ use pam_muscle::effects::{Effect, Kind, Memory, Role, Term};
 use pam_muscle::force::ForceModel;
 use pam_muscle::force::columns::{ForceColumns, N_COLUMNS};
 
-use crate::design_matrix::{DesignMatrix, Regressors, events};
+use crate::design_matrix::{DesignMatrix, Regressors, events, rows_of};
 use crate::hypothesis::{CandidateEffect, n_amplitudes, ranges};
 use crate::joint::{HeldOut, Joint, JointFit};
 use crate::normal::{Extended, Normal};
@@ -247,8 +247,8 @@ impl<'a> Setting<'a> {
         let sheet = self.ground().sheet(&guesses, model);
         let (listed, blocks) = self.listed();
         let width = sheet.width;
-        let of_listed: Vec<&[f64]> = listed.iter().map(|&at| &sheet.columns[at * width..(at + 1) * width]).collect();
-        let rows = Rows { columns: of_listed.concat(), listed, blocks, width, events: sheet.events.clone() };
+        let columns = rows_of(&sheet.columns, width, &listed);
+        let rows = Rows { columns, listed, blocks, width, events: sheet.events.clone() };
         let (normal, fit, read) = self.settled(&guesses, rows, near, model, was)?;
         let model = self.model(&fit);
         let nuisance_n = self.nuisance.force_n(&fit.nuisances, self.track.n());

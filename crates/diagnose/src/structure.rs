@@ -14,6 +14,7 @@ use pam_muscle::force::columns::N_COLUMNS;
 use rayon::prelude::*;
 
 use crate::coordinates::Coordinates;
+use crate::design_matrix::rows_of;
 use crate::hypothesis::ranges;
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
@@ -372,16 +373,14 @@ impl ProjectedResidual {
 
     fn products(&self, block: Range<usize>, features: &[&Feature], width: usize) -> DMatrix<f64> {
         let q = self.n_directions;
-        let dense = |at: usize| &self.rows[at * (q + 1)..(at + 1) * (q + 1)];
         let counted: Vec<usize> = block.filter(|&at| self.counted[at]).collect();
-        let rows: Vec<&[f64]> = counted.iter().map(|&at| dense(at)).collect();
-        let rows = DMatrix::from_vec(q + 1, counted.len(), rows.concat());
+        let rows = DMatrix::from_vec(q + 1, counted.len(), rows_of(&self.rows, q + 1, &counted));
         let of_dense = &rows * rows.transpose();
         // Of the functions, of which few are anything at an instant, with the dense columns and among themselves.
         let n = width - q - 1;
         let (mut crossed, mut own) = (vec![0.0; n * (q + 1)], DMatrix::zeros(n, n));
         let mut here: Vec<(usize, f64)> = Vec::with_capacity(4 * features.len());
-        for &at in &counted {
+        for (&at, dense) in counted.iter().zip(rows.as_slice().chunks_exact(q + 1)) {
             here.clear();
             let mut offset = 0;
             for feature in features {
@@ -391,7 +390,7 @@ impl ProjectedResidual {
             }
             for (position, &(i, left)) in here.iter().enumerate() {
                 let sums = &mut crossed[i * (q + 1)..(i + 1) * (q + 1)];
-                sums.iter_mut().zip(dense(at)).for_each(|(sum, column)| *sum += left * column);
+                sums.iter_mut().zip(dense).for_each(|(sum, column)| *sum += left * column);
                 for &(j, right) in &here[position..] {
                     own[(i.min(j), i.max(j))] += left * right;
                 }

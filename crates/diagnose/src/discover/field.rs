@@ -9,6 +9,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 use pam_muscle::effects::sentence::{Argument, Curve, Scale, Sentence};
 
+use crate::design_matrix::rows_of;
 use crate::joint::HeldOut;
 use crate::state::{Setting, State};
 use crate::structure::ProjectedResidual;
@@ -76,10 +77,7 @@ impl<'a> Field<'a> {
         let width = remainder.n_directions + 1;
         let rows: Vec<DMatrix<f64>> = looked_at
             .iter()
-            .map(|instants| {
-                let of = |at: &usize| &remainder.rows[at * width..(at + 1) * width];
-                DMatrix::from_vec(width, instants.len(), instants.iter().map(of).collect::<Vec<&[f64]>>().concat())
-            })
+            .map(|instants| DMatrix::from_vec(width, instants.len(), rows_of(&remainder.rows, width, instants)))
             .collect();
         let products: Vec<DMatrix<f64>> = rows.iter().map(|rows| rows * rows.transpose()).collect();
         let fold_of = &track.fold_of_block;

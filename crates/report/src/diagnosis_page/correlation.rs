@@ -59,12 +59,13 @@ pub(super) fn autocorrelation<'a>(
     residual: fn(&Samples) -> &[f64],
 ) -> Option<Correlation> {
     let (lag_s, stretches) = stretches(recordings, residual, residual)?;
-    let sums = |lag: usize| sums(&stretches, lag, |stretch| (&stretch.residual, &stretch.residual));
-    let (square, n) = sums(0);
+    let of = |lag: usize| sum(&stretches, lag, |stretch| (&stretch.residual, &stretch.residual));
+    let counts = counts(&stretches);
+    let (square, n) = (of(0), counts[0]);
     if !(square > 0.0 && n > 1.0) {
         return None;
     }
-    let value = (0..=LAGS).into_par_iter().map(|lag| normalized(sums(lag), square / n)).collect();
+    let value = (0..=LAGS).into_par_iter().map(|lag| normalized(of(lag), counts[lag], square / n)).collect();
     Some(Correlation { lag_s: (0..=LAGS).map(|lag| lag as f64 * lag_s).collect(), value, band: Z / n.sqrt() })
 }
 
@@ -75,43 +76,50 @@ pub(super) fn cross_correlation<'a>(
     channel: fn(&Samples) -> &[f64],
 ) -> Option<Correlation> {
     let (lag_s, stretches) = stretches(recordings, residual, channel)?;
-    let of = |lag: usize, pick: fn(&Stretch) -> (&[f64], &[f64])| sums(&stretches, lag, pick);
-    let (residuals, n) = of(0, |stretch| (&stretch.residual, &stretch.residual));
-    let (channels, n_channel) = of(0, |stretch| (&stretch.channel, &stretch.channel));
-    let scale = (residuals / n * channels / n_channel).sqrt();
+    let of = |lag: usize, pick: fn(&Stretch) -> (&[f64], &[f64])| sum(&stretches, lag, pick);
+    let counts = counts(&stretches);
+    let n = counts[0];
+    let residuals = of(0, |stretch| (&stretch.residual, &stretch.residual));
+    let channels = of(0, |stretch| (&stretch.channel, &stretch.channel));
+    let scale = (residuals / n * channels / n).sqrt();
     if !(scale > 0.0 && scale.is_finite() && n > 1.0) {
         return None;
     }
-    let preceding = |lag: usize| (-(lag as f64) * lag_s, of(lag, |stretch| (&stretch.residual, &stretch.channel)));
-    let following = |lag: usize| (lag as f64 * lag_s, of(lag, |stretch| (&stretch.channel, &stretch.residual)));
-    let mut lags: Vec<(f64, (f64, f64))> = (0..LAGS).into_par_iter().map(|later| preceding(LAGS - later)).collect();
+    let preceding = |lag: usize| {
+        let sum = of(lag, |stretch| (&stretch.residual, &stretch.channel));
+        (-(lag as f64) * lag_s, normalized(sum, counts[lag], scale))
+    };
+    let following = |lag: usize| {
+        let sum = of(lag, |stretch| (&stretch.channel, &stretch.residual));
+        (lag as f64 * lag_s, normalized(sum, counts[lag], scale))
+    };
+    let mut lags: Vec<(f64, f64)> = (0..LAGS).into_par_iter().map(|later| preceding(LAGS - later)).collect();
     lags.par_extend((0..=LAGS).into_par_iter().map(following));
     let step = stretches.iter().map(|stretch| stretch.step).max().unwrap_or(1) as f64;
     let both = |lag: usize| {
-        let e = normalized(of(lag, |stretch| (&stretch.residual, &stretch.residual)), residuals / n);
-        let u = normalized(of(lag, |stretch| (&stretch.channel, &stretch.channel)), channels / n_channel);
+        let e = normalized(of(lag, |stretch| (&stretch.residual, &stretch.residual)), counts[lag], residuals / n);
+        let u = normalized(of(lag, |stretch| (&stretch.channel, &stretch.channel)), counts[lag], channels / n);
         e * u
     };
     // One after the other, so that the sum is the same with any number of threads.
     let both: Vec<f64> = (1..=LAGS).into_par_iter().map(both).collect();
     let p = 1.0 + 2.0 * step * both.iter().sum::<f64>();
-    Some(Correlation {
-        lag_s: lags.iter().map(|(lag_s, _)| *lag_s).collect(),
-        value: lags.iter().map(|(_, sums)| normalized(*sums, scale)).collect(),
-        band: Z * (f64::max(p, 1.0) / n).sqrt(),
-    })
+    let (lag_s, value) = lags.into_iter().unzip();
+    Some(Correlation { lag_s, value, band: Z * (f64::max(p, 1.0) / n).sqrt() })
 }
 
-fn normalized((sum, n): (f64, f64), scale: f64) -> f64 {
+fn normalized(sum: f64, n: f64, scale: f64) -> f64 {
     if n > 0.0 { sum / n / scale } else { f64::NAN }
 }
 
-/// Sum of products of the first with the second of `pick` a lag later, and of how many that is; what does not count is zero.
-fn sums(stretches: &[Stretch], lag: usize, pick: fn(&Stretch) -> (&[f64], &[f64])) -> (f64, f64) {
-    let of = |pick: fn(&Stretch) -> (&[f64], &[f64])| -> f64 {
-        stretches.iter().map(|stretch| product(pick(stretch), lag * stretch.step)).sum()
-    };
-    (of(pick), of(|stretch| (&stretch.counts, &stretch.counts)))
+/// How many pairs of samples count at each lag from zero up.
+fn counts(stretches: &[Stretch]) -> Vec<f64> {
+    (0..=LAGS).into_par_iter().map(|lag| sum(stretches, lag, |stretch| (&stretch.counts, &stretch.counts))).collect()
+}
+
+/// Sum of products of the first with the second of `pick` a lag later; what does not count is zero.
+fn sum(stretches: &[Stretch], lag: usize, pick: fn(&Stretch) -> (&[f64], &[f64])) -> f64 {
+    stretches.iter().map(|stretch| product(pick(stretch), lag * stretch.step)).sum()
 }
 
 /// Sum of products of the first with the second so many rows later, in lanes: one sum after the other would wait for each.
