@@ -97,7 +97,7 @@ impl Shown {
         let is_shown = self.is_surely_there || self.share >= SHOWN;
         let stands =
             if evidence >= STRONG { self.is_surely_there || chance < limit } else { is_shown && chance < limit };
-        if self.share < self.least_share(effect) {
+        if self.share < self.least_share(effect, evidence) {
             Some(Against::HeldOut)
         } else {
             (!stands).then_some(Against::Chance)
@@ -106,9 +106,11 @@ impl Shown {
 
     /// What `effect` must take away at least. What happened once did not happen there, and where what outlasts a recording begins in them
     /// is not known; where a static effect acts they may not have been, and what has next to no force there may be there.
-    fn least_share(self, effect: &dyn Effect) -> f64 {
+    fn least_share(self, effect: &dyn Effect, evidence: f64) -> f64 {
         if effect.kind() == Kind::Event || effect.outlasts() {
             f64::NEG_INFINITY
+        } else if self.is_surely_there && evidence >= STRONG {
+            0.0
         } else if effect.is_static() || self.own < LEAST_SHARE {
             -LEAST_SHARE
         } else {
@@ -143,9 +145,12 @@ pub(crate) fn bears_out(before: &Left, after: &Left, floor_square: f64) -> bool 
 }
 
 /// Share of what is left `before`, mean squares in N² beyond `floor_square`, that is no longer left `after`: over all instants or the
-/// counted ones, whichever shows more. What is taken of the noise itself, as a lag of a noisy pressure does, is none.
+/// counted ones, whichever shows more. What is taken of the noise itself, as a lag of a noisy pressure does, is none, and what is added
+/// within it is no harm.
 fn share(before: [f64; 2], after: [f64; 2], floor_square: f64) -> f64 {
-    let share = |at: usize| (before[at] - after[at].max(floor_square)) / beyond(before[at], floor_square);
+    let share = |at: usize| {
+        (before[at].max(floor_square) - after[at].max(floor_square)) / beyond(before[at], floor_square)
+    };
     share(0).max(share(1))
 }
 

@@ -149,6 +149,8 @@ pub(crate) fn candidates(found: &Found, besides: &[&str]) -> Vec<Candidate> {
                 "chance may have given it".to_owned()
             } else if found.stand_ins.contains(&id) {
                 "gains something, and leaves far more than it explains".to_owned()
+            } else if found.unheard_of.contains(&id) {
+                "fits only with a shape that nothing published has".to_owned()
             } else if found.replaced.contains(&id) {
                 "an empirical term takes its place".to_owned()
             } else if explains < 0.02 {

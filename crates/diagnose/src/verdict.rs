@@ -106,7 +106,8 @@ pub fn verdict(found: &Found, sizes: &Sizes, besides: bool) -> Verdict {
         let beyond_sensors = !sizes.limited && sizes.best_n > CONSISTENT_WITHIN * sizes.sensors_n;
         let is_missing = sizes.mismatch_n > sizes.matters_n || beyond_sensors || sizes.static_n.is_some();
         // What called up a name that is none is there.
-        let is_missing = is_missing || !found.stand_ins.is_empty() || !found.replaced.is_empty();
+        let is_missing = is_missing
+            || [&found.stand_ins, &found.unheard_of, &found.replaced].iter().any(|let_go_of| !let_go_of.is_empty());
         return if is_missing { Verdict::Unexplained } else { Verdict::Consistent };
     }
     if structured {

@@ -39,10 +39,10 @@ const STANDS_ALONE: f64 = 10.0;
 /// what is taken in the place of a name that was denied.
 const OUTLASTS_ALONE: f64 = 20.0;
 
-/// Whether `evidence` within what was fitted is enough for `effect` to stand where nothing else speaks for it: not for a static one, since
-/// a misfit of eq. 11 is there in every block.
+/// Whether `evidence` within what was fitted is enough for `effect` to stand though much is left beside it: not for a static one, since a
+/// misfit of eq. 11 is there in every block.
 pub(crate) fn stands_on_evidence(effect: &dyn Effect, evidence: f64) -> bool {
-    !effect.is_static() && evidence > if effect.outlasts() { OUTLASTS_ALONE } else { STANDS_ALONE }
+    !effect.is_static() && evidence > STANDS_ALONE
 }
 
 /// Searches again without what was denied, at most.
