@@ -95,8 +95,10 @@ impl Shown {
     fn against(self, effect: &dyn Effect, evidence: f64, chance: f64) -> Option<Against> {
         let limit = if self.share >= LEAST_SHARE { AS_LIKELY } else { UNLIKELY };
         let is_shown = self.is_surely_there || self.share >= SHOWN;
+        // An event is in one block or two, whatever all of them say.
+        let is_sure = self.is_surely_there || effect.kind() == Kind::Event;
         let stands =
-            if evidence >= STRONG { self.is_surely_there || chance < limit } else { is_shown && chance < limit };
+            if evidence >= STRONG { is_sure || chance < limit } else { is_shown && chance < limit };
         if self.share < self.least_share(effect, evidence) {
             Some(Against::HeldOut)
         } else {
