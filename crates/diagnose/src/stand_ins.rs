@@ -4,12 +4,13 @@ use pam_muscle::Coordinate;
 use pam_muscle::effects::Kind;
 
 use crate::hypothesis::CandidateEffect;
+use crate::named::evidence_of;
 use crate::search::{Found, Judged, Limits, judged};
 use crate::state::Setting;
 use crate::structure::{Feature, ProjectedResidual};
 use crate::trial::wants_another;
 use crate::verdict::Sizes;
-use crate::veto::stands_on_evidence;
+use crate::veto::{stands_on_evidence, stands_unheard_of};
 
 /// Share of the whole mismatch that structure over one coordinate must hold before it is asked what stands in for it.
 const STRUCTURED: f64 = 0.2;
@@ -103,29 +104,31 @@ pub(crate) fn let_go(
     for index in (0..found.best.state.guesses.len()).rev() {
         let guess = &found.best.state.guesses[index];
         let id = guess.id();
-        if !stands(found, index) && stands_in(guess) && found.let_go(setting, index) {
+        // What is left beside what other recordings surely show has another reason.
+        let stands = is_confirmed(found, index)
+            || stands_on_evidence(guess.effect, found.evidence(index), evidence_of(found, index).p_value);
+        if !stands && stands_in(guess) && found.let_go(setting, index) {
             found.stand_ins.push(id);
         }
     }
     Sizes::of(found, limits)
 }
 
-/// Whether effect `index` of `found` stands though much is left beside it, since that has another reason: what other recordings surely
-/// show, and what has the evidence that stands without them.
-fn stands(found: &Found, index: usize) -> bool {
-    let is_confirmed = found.taken.get(index).is_some_and(|taken| taken.is_confirmed);
-    is_confirmed || stands_on_evidence(found.best.state.guesses[index].effect, found.evidence(index))
+/// Whether other recordings surely show effect `index` of `found`.
+fn is_confirmed(found: &Found, index: usize) -> bool {
+    found.taken.get(index).is_some_and(|taken| taken.is_confirmed)
 }
 
 /// Lets go of every effect of `found` whose shape lies where nothing published is, unless recordings that nothing was fitted to show
-/// it, or its evidence stands without them. Whether there was any. Of the seven such names that this was found by, among 500 cases, five
+/// it, or its evidence is overwhelming. Whether there was any. Of the seven such names that this was found by, among 500 cases, five
 /// were wrong.
 pub(crate) fn let_go_of_ends(setting: &Setting<'_>, found: &mut Found) -> bool {
     let mut any = false;
     for index in (0..found.best.state.guesses.len()).rev() {
         let guess = &found.best.state.guesses[index];
         let id = guess.id();
-        if !stands(found, index) && wants_another(guess.effect, &guess.shape) && found.let_go(setting, index) {
+        let stands = is_confirmed(found, index) || stands_unheard_of(guess.effect, found.evidence(index));
+        if !stands && wants_another(guess.effect, &guess.shape) && found.let_go(setting, index) {
             found.unheard_of.push(id);
             any = true;
         }

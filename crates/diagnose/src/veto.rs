@@ -35,14 +35,22 @@ const TELLS: f64 = 0.3;
 /// Evidence within what was fitted that stands where nothing held out tells. Of 400 cases that this was chosen by, all five effects
 /// with more were right that do not outlast a recording, and both with 9 to 10 were wrong.
 const STANDS_ALONE: f64 = 10.0;
-/// The same for what outlasts a recording, since what it was at the beginning of each is fitted beside it and helps any of them; and for
-/// what is taken in the place of a name that was denied.
+/// The same for what outlasts a recording, since what it was at the beginning of each is fitted beside it and helps any of them; for
+/// what is taken in the place of a name that was denied; and for a shape that nothing published has.
 const OUTLASTS_ALONE: f64 = 20.0;
+/// Probability of as much evidence by chance up to which it needs no more than others.
+const UNLIKELY: f64 = 0.01;
 
-/// Whether `evidence` within what was fitted is enough for `effect` to stand though much is left beside it: not for a static one, since a
-/// misfit of eq. 11 is there in every block.
-pub(crate) fn stands_on_evidence(effect: &dyn Effect, evidence: f64) -> bool {
-    !effect.is_static() && evidence > STANDS_ALONE
+/// Whether `evidence` within what was fitted, as chance gives with the probability `chance`, is enough for `effect` to stand where nothing
+/// else speaks for it: not for a static one, since a misfit of eq. 11 is there in every block.
+pub(crate) fn stands_on_evidence(effect: &dyn Effect, evidence: f64, chance: f64) -> bool {
+    let alone = if effect.outlasts() && chance > UNLIKELY { OUTLASTS_ALONE } else { STANDS_ALONE };
+    !effect.is_static() && evidence > alone
+}
+
+/// Whether `evidence` is enough for `effect` to stand with a shape that nothing published has.
+pub(crate) fn stands_unheard_of(effect: &dyn Effect, evidence: f64) -> bool {
+    !effect.is_static() && evidence > OUTLASTS_ALONE
 }
 
 /// Searches again without what was denied, at most.
@@ -332,10 +340,6 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
             (product - piece_product) / (square - piece_square)
         })
         .collect();
-    // What would be half as large as the noise of the sensors decides nothing.
-    if square < 0.25 * held.floor_square * counted.len() as f64 {
-        return None;
-    }
     let m = parts.len() as f64;
     let mean = parts.iter().sum::<f64>() / m;
     let jackknife = parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>() * (m - 1.0) / m;
@@ -344,7 +348,10 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
     // No residual is known better than the sensors.
     let plain = correlated_instants(held, &left) * variance.max(held.floor_square) / square;
     let error = jackknife.max(plain).sqrt();
-    (share.is_finite() && error.is_finite()).then_some(Share { value: share, error })
+    let share = (share.is_finite() && error.is_finite()).then_some(Share { value: share, error })?;
+    // What is less than half as large as the noise of the sensors may be seen all the same, but not be missed: any misfit hides it.
+    let is_small = square < 0.25 * held.floor_square * counted.len() as f64;
+    (!is_small || share.shows()).then_some(share)
 }
 
 #[cfg(test)]

@@ -125,7 +125,9 @@ fn without_a_name_a_muscle_is_consistent_unless_something_is_missing() {
     assert_eq!(verdict(&found, &Sizes { static_n: Some(3.0), ..quiet }, false), Verdict::Unexplained);
     let mut let_go = Found { stand_ins: vec!["slack"], ..found };
     assert_eq!(verdict(&let_go, &quiet, false), Verdict::Unexplained, "what called up a name is there");
-    (let_go.stand_ins, let_go.replaced) = (Vec::new(), vec!["stribeck"]);
+    (let_go.stand_ins, let_go.unheard_of) = (Vec::new(), vec!["force-drift"]);
+    assert_eq!(verdict(&let_go, &quiet, false), Verdict::Unexplained, "and what fits with no shape that is known");
+    (let_go.unheard_of, let_go.replaced) = (Vec::new(), vec!["stribeck"]);
     assert_eq!(verdict(&let_go, &quiet, false), Verdict::Unexplained, "and what a term says better");
 }
 
