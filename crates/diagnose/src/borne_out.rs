@@ -13,6 +13,7 @@ use crate::named::evidence_of;
 use crate::search::Found;
 use crate::state::Setting;
 use crate::track::Track;
+use crate::veto::stands_on_evidence;
 
 /// Share of what is left of held-out recordings beyond the sensors, mean square, that a name must take away to be borne out by them; where
 /// its own force is less than that, they cannot tell. Of 180 names that were looked at, 104 of them right, 97 right and 34 wrong ones
@@ -101,7 +102,8 @@ impl Shown {
         let limit = if self.share >= LEAST_SHARE || is_there && !effect.outlasts() { AS_LIKELY } else { UNLIKELY };
         let is_shown = is_there || self.share >= SHOWN;
         // An event is in one block or two, whatever all of them say.
-        let is_sure = self.is_surely_there || effect.kind() == Kind::Event;
+        let happened = effect.kind() == Kind::Event && stands_on_evidence(effect, evidence, chance);
+        let is_sure = self.is_surely_there || happened;
         let stands = if evidence >= STRONG { is_sure || chance < limit } else { is_shown && chance < limit };
         if self.share < self.least_share(effect, evidence) {
             Some(Against::HeldOut)
@@ -212,7 +214,7 @@ mod tests {
         let step = effect("force-step").expect("an id");
         let happened =
             |evidence: f64| Shown { share: 0.0, own: 0.5, is_surely_there: false }.against(step, evidence, 0.9);
-        assert_eq!((happened(8.0), happened(7.9)), (None, Some(Against::Chance)));
+        assert_eq!((happened(10.1), happened(10.0)), (None, Some(Against::Chance)));
     }
 
     #[test]
