@@ -351,7 +351,7 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
     let share = (share.is_finite() && error.is_finite()).then_some(Share { value: share, error })?;
     // What is less than half as large as the noise of the sensors may be seen all the same, but not be missed: any misfit hides it.
     let is_small = square < 0.25 * held.floor_square * counted.len() as f64;
-    (!is_small || share.shows()).then_some(share)
+    (!is_small || share.shows() && share.least() <= MOST_SEEN).then_some(share)
 }
 
 #[cfg(test)]
