@@ -176,7 +176,7 @@ fn beyond(left: f64, floor_square: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::rehearsal::tests::Given;
-    use crate::search::{Limits, judged, search};
+    use crate::search::{Limits, Taken, judged, search};
 
     use pam_muscle::effects::effect;
 
@@ -240,13 +240,14 @@ mod tests {
         let little = |id: &str, evidence: f64, chance: f64| {
             Shown { share: 0.1, own: 0.1, is_surely_there: true }.against(effect(id).expect("an id"), evidence, chance)
         };
-        assert_eq!(little("pressure-lag", 4.0, 0.4), None, "what is small may be surely there");
+        assert_eq!(little("pressure-lag", FAINT, 0.4), None, "what is small may be surely there");
         assert_eq!(
-            little("pressure-lag", 3.9, 1e-9),
+            little("pressure-lag", 6.0, 1e-9),
             Some(Against::Chance),
             "and may be the same misfit where it is faint"
         );
-        assert_eq!(little("force-drift", 4.0, 0.02), Some(Against::Chance), "and where its beginnings are not known");
+        assert_eq!(little("force-step", 6.0, 1e-9), None, "which a step is not");
+        assert_eq!(little("force-drift", FAINT, 0.02), Some(Against::Chance), "and where its beginnings are not known");
     }
 
     #[test]
@@ -276,6 +277,10 @@ mod tests {
         let setting = plain.beside(&nuisance);
         let state = setting.fit_near(vec![fitted.guess(with.0, with.1)], &found.best.state);
         found.best = judged(&setting, state.expect("a fit")).expect("a fit of every fold");
+        let rest =
+            judged(&setting, setting.fit_without(&found.best.state, 0).expect("a fit")).expect("a fit of every fold");
+        let (without, with) = (rest.held_out, found.best.held_out.clone());
+        found.taken = vec![Taken { without, with, rivals: Vec::new(), is_confirmed: false }];
         let did = let_go_of_others(&setting, &mut found, &held.track);
         assert_eq!(did, !found.denied.is_empty() || !found.by_chance.is_empty());
         (found.best.state.guesses.iter().map(CandidateEffect::id).collect(), found.denied)
