@@ -33,7 +33,7 @@ const UNLIKELY: f64 = 0.01;
 const STRONG: f64 = 8.0;
 /// Evidence within what was fitted that is faint, less than odds of twenty to one against chance for any of the 22 effects of the
 /// catalogue, `ln(20 * 22)`: that held-out recordings show a name with its size is no proof then, since they may have the same misfit of
-/// the base; that they lose half of what is left is. Of 1170 cases that were looked at four wrong names go by it and a right one; where
+/// the base; that they lose half of what is left is. Of 1170 cases that were looked at four wrong names go by it and two right ones; where
 /// not even half is enough, seven and five. A step of the force is told by the rows of a recording.
 const FAINT: f64 = 6.1;
 /// Share of what is left of held-out recordings beyond the sensors with which a name that takes it away is shown, though its own share
