@@ -13,7 +13,7 @@ use crate::named::evidence_of;
 use crate::search::Found;
 use crate::state::Setting;
 use crate::track::Track;
-use crate::veto::stands_on_evidence;
+use crate::veto::{UNLIKELY, stands_on_evidence};
 
 /// Share of what is left of held-out recordings beyond the sensors, mean square, that a name must take away to be borne out by them; where
 /// its own force is less than that, they cannot tell. Of 180 names that were looked at, 104 of them right, 97 right and 34 wrong ones
@@ -22,9 +22,6 @@ const LEAST_SHARE: f64 = 0.2;
 /// Probability of as much evidence within what was fitted by chance, corrected for multiple comparisons, from which on it is none, whatever
 /// held-out recordings say. With half of it 96 right and 32 wrong ones stand, without it 98 and 42.
 const AS_LIKELY: f64 = 0.5;
-/// The same from which on what held-out recordings cannot tell does not stand on it. With half of it 97 and 34 stand, with its double 97
-/// and 36.
-const UNLIKELY: f64 = 0.01;
 
 /// Evidence within what was fitted that is strong: a name with less, which held-out recordings do not show, stands on nothing, and one
 /// with as much, which is surely there in them, is no chance. Of 374 names in 798 cases that were looked at, 320 of them right, the
@@ -65,7 +62,7 @@ pub(crate) fn let_go_of_others(setting: &Setting<'_>, found: &mut Found, held: &
             let shown = Shown {
                 share: share(without, with, setting.floor_square),
                 own: own_square(setting, found, held, index)? / beyond(without[0], setting.floor_square),
-                is_surely_there: found.taken.get(index).is_some_and(|taken| taken.is_confirmed),
+                is_surely_there: found.is_confirmed(index),
             };
             let against = shown.against(effect, found.evidence(index), evidence_of(found, index).p_value)?;
             Some((index, shown.share, against))
@@ -221,6 +218,8 @@ mod tests {
         let happened =
             |evidence: f64| Shown { share: 0.0, own: 0.5, is_surely_there: false }.against(step, evidence, 0.9);
         assert_eq!((happened(10.1), happened(10.0)), (None, Some(Against::Chance)));
+        assert_eq!(against("force-step", -0.1, 0.5, 9e-3), None, "it did not happen there");
+        assert_eq!(against("force-step", 0.3, 0.5, 0.4), None, "others show it");
     }
 
     #[test]

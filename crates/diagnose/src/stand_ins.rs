@@ -105,18 +105,13 @@ pub(crate) fn let_go(
         let guess = &found.best.state.guesses[index];
         let id = guess.id();
         // What is left beside what other recordings surely show has another reason.
-        let stands = is_confirmed(found, index)
+        let stands = found.is_confirmed(index)
             || stands_on_evidence(guess.effect, found.evidence(index), evidence_of(found, index).p_value);
         if !stands && stands_in(guess) && found.let_go(setting, index) {
             found.stand_ins.push(id);
         }
     }
     Sizes::of(found, limits)
-}
-
-/// Whether other recordings surely show effect `index` of `found`.
-fn is_confirmed(found: &Found, index: usize) -> bool {
-    found.taken.get(index).is_some_and(|taken| taken.is_confirmed)
 }
 
 /// Lets go of every effect of `found` whose shape lies where nothing published is, unless recordings that nothing was fitted to show
@@ -127,7 +122,7 @@ pub(crate) fn let_go_of_ends(setting: &Setting<'_>, found: &mut Found) -> bool {
     for index in (0..found.best.state.guesses.len()).rev() {
         let guess = &found.best.state.guesses[index];
         let id = guess.id();
-        let stands = is_confirmed(found, index) || stands_unheard_of(guess.effect, found.evidence(index));
+        let stands = found.is_confirmed(index) || stands_unheard_of(guess.effect, found.evidence(index));
         if !stands && wants_another(guess.effect, &guess.shape) && found.let_go(setting, index) {
             found.unheard_of.push(id);
             any = true;

@@ -38,8 +38,10 @@ const STANDS_ALONE: f64 = 10.0;
 /// The same for what outlasts a recording, since what it was at the beginning of each is fitted beside it and helps any of them; for
 /// what is taken in the place of a name that was denied; and for a shape that nothing published has.
 const OUTLASTS_ALONE: f64 = 20.0;
-/// Probability of as much evidence by chance up to which it needs no more than others.
-const UNLIKELY: f64 = 0.01;
+/// Probability of as much evidence within what was fitted by chance, corrected for multiple comparisons, from which on what held-out
+/// recordings cannot tell does not stand on it, and what outlasts a recording needs the more. Of 180 names that were looked at, 104 of
+/// them right, 97 right and 34 wrong ones stand; with half of it as many, with its double 97 and 36.
+pub(crate) const UNLIKELY: f64 = 0.01;
 
 /// Whether `evidence` within what was fitted, as chance gives with the probability `chance`, is enough for `effect` to stand where nothing
 /// else speaks for it: not for a static one, since a misfit of eq. 11 is there in every block.
@@ -348,10 +350,10 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
     // No residual is known better than the sensors.
     let plain = correlated_instants(held, &left) * variance.max(held.floor_square) / square;
     let error = jackknife.max(plain).sqrt();
-    let share = (share.is_finite() && error.is_finite()).then_some(Share { value: share, error })?;
+    let seen = (share.is_finite() && error.is_finite()).then_some(Share { value: share, error })?;
     // What is less than half as large as the noise of the sensors may be seen all the same, but not be missed: any misfit hides it.
     let is_small = square < 0.25 * held.floor_square * counted.len() as f64;
-    (!is_small || share.shows() && share.least() <= MOST_SEEN).then_some(share)
+    (!is_small || seen.shows() && seen.least() <= MOST_SEEN).then_some(seen)
 }
 
 #[cfg(test)]

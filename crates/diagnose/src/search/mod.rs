@@ -115,6 +115,11 @@ impl Found {
         self.taken.get(index).map_or(0.0, |taken| taken.without.log_ratio(&taken.with))
     }
 
+    /// Whether recordings that nothing was fitted to surely show effect `index`, with its size.
+    pub(crate) fn is_confirmed(&self, index: usize) -> bool {
+        self.taken.get(index).is_some_and(|taken| taken.is_confirmed)
+    }
+
     /// Lets go of effect `index`; `setting` has the nuisances that were in. False where the rest determines no fit.
     pub(crate) fn let_go(&mut self, setting: &Setting<'_>, index: usize) -> bool {
         let rest = setting.fit_without(&self.best.state, index).and_then(|state| judged(setting, state));
