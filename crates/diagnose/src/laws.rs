@@ -5,7 +5,7 @@
 
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
-use pam_muscle::direction::{Direction, Driver, Standstill, Thresholds};
+use pam_muscle::direction::{Direction, Driver, Law, Standstill, Thresholds};
 use pam_muscle::effects::Role;
 use pam_muscle::force::Form;
 use rayon::prelude::*;
@@ -42,14 +42,14 @@ pub(crate) fn better(
     if question.model.form == Form::AsPrinted || question.model.config.assumed.standstill.is_some() {
         return Ok(None);
     }
+    let others: Vec<Standstill> = LAWS.into_iter().filter(|law| *law != thresholds.standstill).collect();
+    let directions: Result<Vec<Vec<Direction>>, IdentifyError> =
+        question.estimation.par_iter().map(|prepared| directed(prepared, thresholds, &others)).collect();
+    let mut directions: Vec<_> = directions?.into_iter().map(Vec::into_iter).collect();
     let mut best: Option<(f64, Standstill)> = None;
-    for standstill in LAWS.into_iter().filter(|law| *law != thresholds.standstill) {
-        let directions: Result<Vec<Direction>, IdentifyError> = question
-            .estimation
-            .par_iter()
-            .map(|prepared| directed(prepared, Thresholds { standstill, ..thresholds }))
-            .collect();
-        let other = track.redirected(&directions?);
+    for standstill in others {
+        let under: Vec<Direction> = directions.iter_mut().filter_map(Iterator::next).collect();
+        let other = track.redirected(&under);
         let both: Vec<bool> = track.counted.iter().zip(&other.counted).map(|(own, other)| *own && *other).collect();
         // Where hardly anything is left to compare, nothing is decided.
         if 2 * both.iter().filter(|counted| **counted).count() < track.n_counted() {
@@ -67,8 +67,16 @@ pub(crate) fn better(
     Ok(best.map(|(_, standstill)| standstill))
 }
 
-fn directed(prepared: &Prepared, thresholds: Thresholds) -> Result<Direction, IdentifyError> {
-    Direction::of(&prepared.recording, thresholds, Driver::Motion)
+/// Directions of a recording under each of `standstills`.
+fn directed(
+    prepared: &Prepared,
+    thresholds: Thresholds,
+    standstills: &[Standstill],
+) -> Result<Vec<Direction>, IdentifyError> {
+    let laws: Vec<Law> =
+        standstills.iter().map(|&standstill| Law::of(Thresholds { standstill, ..thresholds })).collect();
+    let n_rows = prepared.recording.samples.n_rows();
+    Direction::of_first_under(n_rows, &prepared.recording, thresholds, Driver::Motion, &laws)
         .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })
 }
 

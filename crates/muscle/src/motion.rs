@@ -4,22 +4,28 @@
 //! that never overshoot: see [`crate::smoothing`].
 
 use std::io;
+use std::ops::Range;
 
-use pam_recording::Recording;
+use pam_recording::{CHUNK_ROWS, Recording};
+use rayon::prelude::*;
 
 use crate::direction::{Direction, Thresholds};
 use crate::effects::{Moment, Seen};
 use crate::force::ForceModel;
 use crate::knees::Knees;
-use crate::smoothing::{Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Parabola, Sliding, Window};
+use crate::smoothing::{
+    Average, HALF_VALUE_WINDOW_S, HALF_WINDOW_S, Onward, Parabola, Sliding, Window, period_between_s,
+};
 
 /// Deviations of the noise in a threshold of the direction.
 const DEVIATIONS_PER_THRESHOLD: f64 = 5.0;
 /// Six deviations of the noise, from peak to peak, over a threshold of the direction.
 pub const NOISE_PER_THRESHOLD: f64 = 6.0 / DEVIATIONS_PER_THRESHOLD;
 
-/// Rows beyond the last one that a walk visits which it reads: more than the longest windows and the knees found in them reach.
-const BEYOND: usize = 512;
+/// Rows of a segment that are looked at in one go, each go on a thread of its own.
+const STRETCH_ROWS: usize = 1 << 15;
+/// Rows to either side that are read beside them: more than the longest windows, rests, and the knees found in them reach.
+const BESIDE: usize = 2048;
 
 /// One row of a recording with everything that effects need.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,40 +85,109 @@ pub fn walk(
     channels: Channels,
     visit: &mut dyn FnMut(Instant),
 ) -> io::Result<()> {
-    let rest_length_m = base.muscle().rest_length_m;
-    let rest_slide_m_per_pa = base.slide_m_per_pa(rest_length_m);
     let mut first_s = None;
     for segment in recording.segments.iter().filter(|segment| segment.start < n_rows) {
-        // What lies within the windows of the last row counts.
-        let seen = segment.start..segment.end.min(n_rows.saturating_add(BEYOND));
-        let rows = Rows::read(recording, seen)?;
-        let n_visited = rows.time_s.len().min(n_rows - segment.start);
-        let Some(&begin_s) = rows.time_s.first() else { continue };
+        let n_visited = segment.end.min(n_rows) - segment.start;
+        let Some([begin_s, end_s]) = ends_s(recording, segment)? else { continue };
         let origin_s = *first_s.get_or_insert(begin_s);
-        let window = Window::over(&rows.time_s, HALF_WINDOW_S);
-        let near = Window::over(&rows.time_s, HALF_VALUE_WINDOW_S);
-        let average = Average::over(&rows.time_s);
-        let windows = [&near, &window];
-        let lengths = Path::of(rows.length_m, windows, thresholds.length_m / DEVIATIONS_PER_THRESHOLD);
-        let pressures = Path::of(rows.pressure_pa, windows, thresholds.pressure_pa / DEVIATIONS_PER_THRESHOLD);
-        let still = Still::of(&lengths, &window, thresholds.length_m);
+        let view = View::over(recording, segment, [begin_s, end_s], thresholds, channels);
+        let starts: Vec<usize> = (0..n_visited).step_by(STRETCH_ROWS).collect();
+        let mut path = Followed::from_rest(&view, base);
+        for starts in starts.chunks(rayon::current_num_threads()) {
+            let stretches: io::Result<Vec<Vec<Local>>> = starts
+                .par_iter()
+                .map(|&start| {
+                    let rows = start.next_multiple_of(stride)..(start + STRETCH_ROWS).min(n_visited);
+                    view.locals(rows, stride, direction, base)
+                })
+                .collect();
+            for local in stretches?.into_iter().flatten() {
+                visit(path.on_to(local, index, origin_s));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Times of the first and the last row of a segment, in s; none where it has no rows.
+fn ends_s(recording: &Recording, segment: &Range<usize>) -> io::Result<Option<[f64; 2]>> {
+    if segment.is_empty() {
+        return Ok(None);
+    }
+    let time_s = |row: usize| -> io::Result<f64> {
+        let chunk = recording.samples.chunk(row / CHUNK_ROWS)?;
+        Ok(chunk.time_s()[row - chunk.first_row()])
+    };
+    Ok(Some([time_s(segment.start)?, time_s(segment.end - 1)?]))
+}
+
+/// How a segment is looked at.
+struct View<'a> {
+    recording: &'a Recording,
+    segment: &'a Range<usize>,
+    thresholds: Thresholds,
+    channels: Channels,
+    near: Window,
+    window: Window,
+    average: Average,
+}
+
+/// What the rows around one tell of it. What it remembers of all rows before is still missing from the instant.
+struct Local {
+    instant: Instant,
+    average_pa: f64,
+    average_m: f64,
+    /// Slide by a change of the pressure at this length, in m/Pa.
+    slide_m_per_pa: f64,
+    /// Rates that start and stop when the drive does.
+    sharp_pa_per_s: f64,
+    sharp_m_per_s: f64,
+    /// Whether the length stands still.
+    resting: bool,
+}
+
+impl<'a> View<'a> {
+    fn over(
+        recording: &'a Recording,
+        segment: &'a Range<usize>,
+        ends_s: [f64; 2],
+        thresholds: Thresholds,
+        channels: Channels,
+    ) -> Self {
+        let period_s = period_between_s(segment.len(), ends_s);
+        let [near, window] = [HALF_VALUE_WINDOW_S, HALF_WINDOW_S].map(|half_s| Window::every(period_s, half_s));
+        Self { recording, segment, thresholds, channels, near, window, average: Average::every(period_s) }
+    }
+
+    /// Every `stride`-th of `rows` of the segment.
+    fn locals(
+        &self,
+        rows: Range<usize>,
+        stride: usize,
+        direction: &Direction,
+        base: &ForceModel,
+    ) -> io::Result<Vec<Local>> {
+        if rows.is_empty() {
+            return Ok(Vec::new());
+        }
+        let Self { segment, thresholds, near, window, average, .. } = self;
+        // Rests are looked for at rows that do not depend on where a stretch begins.
+        let from = rows.start.saturating_sub(BESIDE) / window.half * window.half;
+        let read = segment.start + from..segment.end.min(segment.start + rows.end + BESIDE);
+        let columns = Rows::read(self.recording, read)?;
+        let windows = [near, window];
+        let lengths = Path::of(columns.length_m, windows, thresholds.length_m / DEVIATIONS_PER_THRESHOLD);
+        let pressures = Path::of(columns.pressure_pa, windows, thresholds.pressure_pa / DEVIATIONS_PER_THRESHOLD);
+        let still = Still::of(&lengths, window, thresholds.length_m);
         let (mut sharp_pressures, mut sharp_lengths) = (pressures.sharp(windows), lengths.sharp(windows));
-        let mut forces = Sliding::along(&near, &rows.force_n);
+        let mut forces = Sliding::along(near, &columns.force_n);
         // Smooth forces are to be compared with equally smooth rates. What slides and remembers it starts and stops when the
         // drive does: a stop smeared over some rows would be a crawl.
-        let recorded = channels == Channels::Recorded;
+        let recorded = self.channels == Channels::Recorded;
         let choose = |smooth_value: f64, recorded_value: f64| if recorded { recorded_value } else { smooth_value };
-        let mut last: Option<(f64, f64)> = None;
-        let noise = average.share_of_noise() * NOISE_PER_THRESHOLD;
-        let within_s = window.width_s();
-        let mut contraction = Onward::new(noise * thresholds.length_m, within_s);
-        let mut slide =
-            Onward::new(noise * (thresholds.length_m + rest_slide_m_per_pa * thresholds.pressure_pa), within_s);
-        let mut rest_slide = Onward::new(noise * rest_slide_m_per_pa * thresholds.pressure_pa, within_s);
-        let mut by_pressure_m = 0.0;
-        let mut at = 0;
-        while at < n_visited {
-            let row = segment.start + at;
+        let mut locals = Vec::with_capacity(rows.len().div_ceil(stride));
+        for at in rows.step_by(stride) {
+            let (row, at) = (segment.start + at, at - from);
             let (sharp_pressure, sharp_length) = (sharp_pressures.at(at), sharp_lengths.at(at));
             let [pressure, length] = if recorded {
                 [sharp_pressure, sharp_length]
@@ -123,56 +198,100 @@ pub fn walk(
                 ]
             };
             let smooth_force_n = forces.parabola(at).value;
-            let (average_m, average_pa) = (lengths.average(&average, at), pressures.average(&average, at));
-            let (step_s, pressure_step_pa) =
-                last.map_or((0.0, 0.0), |(time_s, pressure_pa)| (rows.time_s[at] - time_s, average_pa - pressure_pa));
-            let slide_m_per_pa = base.slide_m_per_pa(average_m);
-            let resting = still.at(at, sharp_length.slope);
-            if resting {
-                by_pressure_m += slide_m_per_pa * pressure_step_pa;
-            }
-            last = Some((rows.time_s[at], average_pa));
-            let shortened_m = rest_length_m - average_m;
-            let slide_speed_m_per_s = if resting { slide_m_per_pa * sharp_pressure.slope } else { -sharp_length.slope };
-            let contraction_m = contraction.follow(shortened_m, -sharp_length.slope);
-            let slide_m = slide.follow(shortened_m + by_pressure_m, slide_speed_m_per_s);
-            let rest_slide_m =
-                rest_slide.follow(by_pressure_m, if resting { slide_m_per_pa * sharp_pressure.slope } else { 0.0 });
-            visit(Instant {
-                row,
-                moment: Moment {
-                    recording: index,
-                    time_s: rows.time_s[at] - origin_s,
-                    step_s,
-                    pressure_pa: choose(pressure.value, pressures.recorded(at)),
-                    pressure_rate_pa_per_s: pressure.slope,
-                    length_m: choose(length.value, lengths.recorded(at)),
-                    contraction_ratio: contraction_m / rest_length_m,
-                    speed_m_per_s: -length.slope,
-                    slide_speed_m_per_s,
-                    acceleration_m_per_s2: -length.curvature,
-                    direction: direction.sign(row),
-                    came: false,
-                    slide_m,
-                    rest_slide_m,
-                    force_n: smooth_force_n,
-                    warmth_k: warmth_k(&rows.temperature_k, &near, at),
+            let average_m = lengths.average(average, at);
+            locals.push(Local {
+                instant: Instant {
+                    row,
+                    moment: Moment {
+                        time_s: columns.time_s[at],
+                        pressure_pa: choose(pressure.value, pressures.recorded(at)),
+                        pressure_rate_pa_per_s: pressure.slope,
+                        length_m: choose(length.value, lengths.recorded(at)),
+                        speed_m_per_s: -length.slope,
+                        acceleration_m_per_s2: -length.curvature,
+                        direction: direction.sign(row),
+                        force_n: smooth_force_n,
+                        warmth_k: warmth_k(&columns.temperature_k, near, at),
+                        ..Moment::default()
+                    },
+                    force_n: choose(smooth_force_n, columns.force_n.get(at).copied().unwrap_or(0.0)),
+                    knee: recorded && lengths.knees.bend(at) != 0.0,
+                    settled: direction.is_settled(row)
+                        && (recorded || {
+                            let first = row.saturating_sub(near.half).max(segment.start);
+                            let last = (row + near.half).min(segment.end - 1);
+                            direction.is_settled(first) && direction.is_settled(last)
+                        }),
                 },
-                force_n: choose(smooth_force_n, rows.force_n.get(at).copied().unwrap_or(0.0)),
-                knee: recorded && lengths.knees.bend(at) != 0.0,
-                settled: if !recorded {
-                    let (from, to) = (at.saturating_sub(near.half), (at + near.half).min(rows.time_s.len() - 1));
-                    direction.is_settled(segment.start + from)
-                        && direction.is_settled(row)
-                        && direction.is_settled(segment.start + to)
-                } else {
-                    direction.is_settled(row)
-                },
+                average_pa: pressures.average(average, at),
+                average_m,
+                slide_m_per_pa: base.slide_m_per_pa(average_m),
+                sharp_pa_per_s: sharp_pressure.slope,
+                sharp_m_per_s: sharp_length.slope,
+                resting: still.at(at, sharp_length.slope),
             });
-            at += stride;
+        }
+        Ok(locals)
+    }
+}
+
+/// What a segment remembers of its way so far.
+struct Followed {
+    rest_length_m: f64,
+    contraction: Onward,
+    slide: Onward,
+    rest_slide: Onward,
+    by_pressure_m: f64,
+    /// Time and pressure of the row before.
+    last: Option<(f64, f64)>,
+}
+
+impl Followed {
+    fn from_rest(view: &View<'_>, base: &ForceModel) -> Self {
+        let rest_length_m = base.muscle().rest_length_m;
+        let slid_m = base.slide_m_per_pa(rest_length_m) * view.thresholds.pressure_pa;
+        let noise = view.average.share_of_noise() * NOISE_PER_THRESHOLD;
+        let onward = |threshold_m: f64| Onward::new(noise * threshold_m, view.window.width_s());
+        Self {
+            rest_length_m,
+            contraction: onward(view.thresholds.length_m),
+            slide: onward(view.thresholds.length_m + slid_m),
+            rest_slide: onward(slid_m),
+            by_pressure_m: 0.0,
+            last: None,
         }
     }
-    Ok(())
+
+    /// The instant of the next row of recording `index`, which began at `origin_s`.
+    fn on_to(&mut self, local: Local, index: usize, origin_s: f64) -> Instant {
+        let Local { instant, average_pa, average_m, slide_m_per_pa, sharp_pa_per_s, sharp_m_per_s, resting } = local;
+        let time_s = instant.moment.time_s;
+        let (step_s, pressure_step_pa) =
+            self.last.map_or((0.0, 0.0), |(last_s, last_pa)| (time_s - last_s, average_pa - last_pa));
+        self.last = Some((time_s, average_pa));
+        let by_pressure_m_per_s = if resting { slide_m_per_pa * sharp_pa_per_s } else { 0.0 };
+        if resting {
+            self.by_pressure_m += slide_m_per_pa * pressure_step_pa;
+        }
+        let shortened_m = self.rest_length_m - average_m;
+        let slide_speed_m_per_s = if resting { by_pressure_m_per_s } else { -sharp_m_per_s };
+        let contraction_m = self.contraction.follow(shortened_m, -sharp_m_per_s);
+        let slide_m = self.slide.follow(shortened_m + self.by_pressure_m, slide_speed_m_per_s);
+        let rest_slide_m = self.rest_slide.follow(self.by_pressure_m, by_pressure_m_per_s);
+        Instant {
+            moment: Moment {
+                recording: index,
+                time_s: time_s - origin_s,
+                step_s,
+                contraction_ratio: contraction_m / self.rest_length_m,
+                slide_speed_m_per_s,
+                slide_m,
+                rest_slide_m,
+                ..instant.moment
+            },
+            ..instant
+        }
+    }
 }
 
 /// 20 °C, which effects count a temperature from, in K.
@@ -183,8 +302,7 @@ fn warmth_k(temperature_k: &[f64], near: &Window, at: usize) -> f64 {
     if temperature_k.is_empty() { 0.0 } else { near.parabola(temperature_k, at).value - ROOM_K }
 }
 
-/// Columns of one segment.
-#[derive(Default)]
+/// Columns of a stretch of rows.
 struct Rows {
     time_s: Vec<f64>,
     pressure_pa: Vec<f64>,
@@ -196,31 +314,35 @@ struct Rows {
 }
 
 impl Rows {
-    fn read(recording: &Recording, segment: std::ops::Range<usize>) -> io::Result<Self> {
-        let mut rows = Self::default();
-        for index in 0..recording.samples.n_chunks() {
-            let here = recording.samples.chunk_rows(index);
-            let (from, to) = (segment.start.max(here.start), segment.end.min(here.end));
-            if from >= to {
-                continue;
+    fn read(recording: &Recording, rows: Range<usize>) -> io::Result<Self> {
+        let column = |is_there: bool| Vec::with_capacity(if is_there { rows.len() } else { 0 });
+        let samples = &recording.samples;
+        let mut columns = Self {
+            time_s: column(true),
+            pressure_pa: column(true),
+            length_m: column(true),
+            force_n: column(samples.has_force()),
+            temperature_k: column(samples.has_temperature()),
+        };
+        for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
+            let chunk = samples.chunk(index)?;
+            let (first, n) = (chunk.first_row(), chunk.n_rows());
+            let range = rows.start.max(first) - first..rows.end.min(first + n) - first;
+            columns.time_s.extend_from_slice(&chunk.time_s()[range.clone()]);
+            columns.pressure_pa.extend_from_slice(&chunk.pressure_pa()[range.clone()]);
+            columns.length_m.extend_from_slice(&chunk.length_m()[range.clone()]);
+            if samples.has_force() {
+                columns.force_n.extend_from_slice(&chunk.force_n()[range.clone()]);
             }
-            let chunk = recording.samples.chunk(index)?;
-            let range = from - here.start..to - here.start;
-            rows.time_s.extend_from_slice(&chunk.time_s()[range.clone()]);
-            rows.pressure_pa.extend_from_slice(&chunk.pressure_pa()[range.clone()]);
-            rows.length_m.extend_from_slice(&chunk.length_m()[range.clone()]);
-            if recording.samples.has_force() {
-                rows.force_n.extend_from_slice(&chunk.force_n()[range.clone()]);
-            }
-            if recording.samples.has_temperature() {
-                rows.temperature_k.extend_from_slice(&chunk.temperature_k()[range]);
+            if samples.has_temperature() {
+                columns.temperature_k.extend_from_slice(&chunk.temperature_k()[range]);
             }
         }
-        Ok(rows)
+        Ok(columns)
     }
 }
 
-/// A channel of one segment.
+/// A channel of a stretch of rows.
 struct Path {
     /// Straight on where it has a knee.
     rest: Vec<f64>,

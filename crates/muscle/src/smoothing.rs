@@ -38,7 +38,11 @@ pub(crate) struct Window {
 
 impl Window {
     pub(crate) fn over(time_s: &[f64], half_s: f64) -> Self {
-        let period_s = period_s(time_s);
+        Self::every(period_s(time_s), half_s)
+    }
+
+    /// The same over rows that are `period_s` apart.
+    pub(crate) fn every(period_s: f64, half_s: f64) -> Self {
         let half = half_rows(half_s, period_s);
         let h = half as f64;
         let sum2 = h * (h + 1.0) * (2.0 * h + 1.0) / 3.0;
@@ -193,8 +197,13 @@ fn half_rows(half_s: f64, period_s: f64) -> usize {
 
 /// Time between evenly sampled rows, in s.
 fn period_s(time_s: &[f64]) -> f64 {
-    let n_rows = time_s.len();
-    if n_rows > 1 { (time_s[n_rows - 1] - time_s[0]) / (n_rows - 1) as f64 } else { 1.0 }
+    let ends_s = [time_s.first(), time_s.last()].map(|time_s| time_s.copied().unwrap_or_default());
+    period_between_s(time_s.len(), ends_s)
+}
+
+/// The same of `n_rows` from the times of the first and the last.
+pub(crate) fn period_between_s(n_rows: usize, [first_s, last_s]: [f64; 2]) -> f64 {
+    if n_rows > 1 { (last_s - first_s) / (n_rows - 1) as f64 } else { 1.0 }
 }
 
 /// Weights with which the acceleration of an [`Instant`](crate::motion::Instant) averages the true one over the rows
@@ -229,8 +238,9 @@ pub(crate) struct Average {
 }
 
 impl Average {
-    pub(crate) fn over(time_s: &[f64]) -> Self {
-        Self { weights: acceleration_weights(period_s(time_s)) }
+    /// Over rows that are `period_s` apart.
+    pub(crate) fn every(period_s: f64) -> Self {
+        Self { weights: acceleration_weights(period_s) }
     }
 
     pub(crate) fn at(&self, channel: &[f64], at: usize) -> f64 {
@@ -357,9 +367,8 @@ mod tests {
 
     #[test]
     fn an_average_of_a_step_never_turns_back() {
-        let time_s: Vec<f64> = (0..60).map(|row| f64::from(row) * 0.005).collect();
         let channel: Vec<f64> = (0..60).map(|row| if row < 30 { 0.0 } else { 1.0 }).collect();
-        let average = Average::over(&time_s);
+        let average = Average::every(0.005);
         let path: Vec<f64> = (0..60).map(|at| average.at(&channel, at)).collect();
         assert!(path.windows(2).all(|pair| pair[1] >= pair[0]));
         assert_eq!((path[0], path[59]), (0.0, 1.0));

@@ -132,17 +132,25 @@ impl Direction {
                 direction.skip_to(piece.start);
                 *ends = *carried;
             }
-            for start in piece.clone().step_by(STRETCH_ROWS) {
-                let end = (start + STRETCH_ROWS).min(piece.end);
-                let (time_s, pressure_pa, length_m) = rows(recording, &(start..end))?;
-                if end - start < 2 {
-                    all.iter_mut().for_each(|(direction, before)| {
-                        direction.extend(&vec![State { bounds: before.bounds(), is_settled: true }; end - start]);
-                    });
-                    continue;
+            let starts: Vec<usize> = piece.clone().step_by(STRETCH_ROWS).collect();
+            for starts in starts.chunks(rayon::current_num_threads()) {
+                let read = |&start: &usize| rows(recording, &(start..(start + STRETCH_ROWS).min(piece.end)));
+                let columns: Vec<Columns> = starts.par_iter().map(read).collect::<io::Result<_>>()?;
+                let stretches: Vec<Option<Stretch<'_>>> = columns
+                    .par_iter()
+                    .map(|(time_s, pressure_pa, length_m)| {
+                        (time_s.len() >= 2).then(|| Stretch::of(time_s, pressure_pa, length_m, thresholds, driver))
+                    })
+                    .collect();
+                for stretch in stretches {
+                    match stretch {
+                        Some(stretch) => go_on(&stretch, thresholds, laws, &mut all),
+                        // A row alone says nothing.
+                        None => all.iter_mut().for_each(|(direction, before)| {
+                            direction.extend(&[State { bounds: before.bounds(), is_settled: true }]);
+                        }),
+                    }
                 }
-                let stretch = Stretch::of(&time_s, &pressure_pa, &length_m, thresholds, driver);
-                go_on(&stretch, thresholds, laws, &mut all);
             }
         }
         all.iter_mut().for_each(|(direction, _)| direction.skip_to(n_rows));

@@ -5,7 +5,7 @@ use crate::force::{ForceModel, Parameter, Terms};
 use crate::geometry::Muscle;
 
 /// Channels and what follows from them at one instant, in SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Moment {
     /// Which recording; a simulation is recording 0.
     pub recording: usize,
