@@ -150,7 +150,7 @@ impl Outputs {
             outputs.push((output, pretty_json(model)?));
         }
         if let (Some(output), Some(augmented)) = (self.report, augmented) {
-            let page = page::page(artifact, [&found.model, augmented], own, traces(found, REPORT_SAMPLES)?, provenance);
+            let page = page::page(artifact, [&found.model, augmented], own, traces(found, REPORT_SAMPLES), provenance);
             outputs.push((output, pam_report::diagnosis_page(&page)?.into_bytes()));
         }
         let mut earlier = None;

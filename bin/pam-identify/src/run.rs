@@ -97,7 +97,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     let recordings: Vec<_> = prepared.map(|prepared| (&prepared.recording, &prepared.quality)).collect();
     artifact.warnings.extend(disagree::notes(&recordings, &found.muscle)?);
     artifact.warnings.extend(noise::words(found.estimation.iter().chain(&found.validation), &found.model, None)?);
-    artifact.warnings.extend(twice::repeated(recordings.iter().map(|(recording, _)| *recording))?);
+    let alone: Vec<_> = recordings.iter().map(|(recording, _)| *recording).collect();
+    artifact.warnings.extend(twice::repeated(&alone)?);
     artifact.warnings.extend(dead_band::words(recordings.iter().copied()));
     let apart = apart::find(&found)?;
     artifact.warnings.extend(apart.as_ref().map(Apart::words));

@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<Verdict> {
     if let Some(words) = spikes::warning(&prepared.recording, &prepared.quality)? {
         console.warn(words);
     }
-    for words in twice::repeated(std::iter::once(&prepared.recording))? {
+    for words in twice::repeated(&[&prepared.recording])? {
         console.warn(words);
     }
     for words in out_of_range(|| std::iter::once(&prepared)) {

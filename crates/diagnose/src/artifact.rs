@@ -6,7 +6,7 @@ use pam_artifact::model::{
     ParameterStatus, RecordingFit, SearchReport,
 };
 use pam_artifact::{Input, Tool};
-use pam_identification::evaluate::{Evaluation, evaluate, evaluate_augmented, evaluate_residuals, noise_floor_n};
+use pam_identification::evaluate::{Evaluation, evaluate, evaluate_augmented, noise_floor_n};
 use pam_identification::prepare::{Prepared, begun_at_rest};
 use pam_identification::search_space::Free;
 use pam_muscle::effects::Kind;
@@ -57,7 +57,6 @@ impl Agreement {
     /// [`DiagnoseError::Recording`] where samples cannot be read back.
     pub fn of(diagnosis: &Diagnosis) -> Result<Self, DiagnoseError> {
         let Diagnosis { estimation, holdout, base, augmented, model, .. } = diagnosis;
-        let (fitted, residuals) = evaluate_residuals(estimation, augmented, model.direction)?;
         // Each model as it takes friction at rest: no gain comes from a state that suits one of them alone.
         let as_base = |recordings| begun_at_rest(recordings, base, model.direction.standstill);
         let base_holdout = evaluate(&as_base(holdout)?, base)?;
@@ -74,10 +73,10 @@ impl Agreement {
                 Some(kept) => evaluate_augmented(holdout, &kept.everywhere.elsewhere(), model.direction)?.together,
                 None => None,
             },
-            estimation: fitted,
-            holdout: evaluate_augmented(holdout, &augmented.elsewhere(), model.direction)?,
+            estimation: diagnosis.fitted.evaluation.clone(),
+            holdout: diagnosis.held.evaluation.clone(),
             noise_floor_n: noise_floor_n(estimation, augmented.base())?,
-            effective_samples: effective_samples(&residuals),
+            effective_samples: effective_samples(&diagnosis.fitted.residuals_n()),
         })
     }
 }

@@ -97,7 +97,8 @@ pub(crate) fn noticed(
     let mut words = out_of_range(all);
     words.extend(faults::noise::words(all(), base, Some(faults::reading::own_n(model)))?);
     words.extend(faults::dead_band::words(all().map(|prepared| (&prepared.recording, &prepared.quality))));
-    words.extend(faults::twice::repeated(all().map(|prepared| &prepared.recording))?);
+    let recordings: Vec<&Recording> = all().map(|prepared| &prepared.recording).collect();
+    words.extend(faults::twice::repeated(&recordings)?);
     Ok(words)
 }
 

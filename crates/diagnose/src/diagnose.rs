@@ -6,9 +6,9 @@ use pam_artifact::diagnosis::{
     Verdict,
 };
 use pam_artifact::model::EffectEntry;
+use pam_identification::along::Along;
 use pam_identification::evaluate::{evaluate, noise_floor_n};
 use pam_identification::prepare::{Prepared, begun_at_rest};
-use pam_identification::trace::traces_augmented;
 use pam_muscle::effects::{AugmentedModel, Effect, Term};
 use pam_muscle::force::ForceModel;
 use pam_recording::Recording;
@@ -121,6 +121,10 @@ pub struct Diagnosis {
     pub estimation: Vec<Prepared>,
     /// Held-out recordings.
     pub holdout: Vec<Prepared>,
+    /// What is written, along the estimation recordings.
+    pub fitted: Along,
+    /// The same along held-out recordings, without what acts in the fitted ones alone.
+    pub held: Along,
 }
 
 /// Effects that may be named unless told otherwise.
@@ -198,7 +202,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     observer(done.get(), steps);
     let mut recordings = Recordings { estimation, holdout, rig };
     let outcome = recordings.under_best_law(&mut model, &limits, track, &advance)?;
-    let Recordings { mut estimation, mut holdout, rig } = recordings;
+    let Recordings { estimation, holdout, rig } = recordings;
     let question = DiagnosisProblem::new(&estimation, &model, limits);
     let held = (!holdout.is_empty()).then(|| rig::track(&holdout, &model, &rig)).transpose()?;
     let held = held.map(|held| question.without_mistaken(&held));
@@ -255,10 +259,18 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let without_terms =
         discovery.as_ref().filter(|_| !written.effects.is_empty()).map(|discovery| discovery.without_terms.clone());
     let augmented = rig::beside(&rig, &written.model());
-    let fitted_traces = traces_augmented(&estimation, &augmented, direction)?;
-    let held_traces = traces_augmented(&holdout, &augmented.elsewhere(), direction)?;
+    let elsewhere = augmented.elsewhere();
+    // Each begins as all of the model has it.
+    let (mut begun, mut holdout_begun) = (estimation.clone(), holdout.clone());
+    let begin = |(index, prepared): (usize, &mut Prepared)| prepared.begin_with(&augmented, direction, index);
+    begun.par_iter_mut().enumerate().try_for_each(begin)?;
+    holdout_begun.par_iter_mut().try_for_each(|prepared| prepared.begin_with(&elsewhere, direction, 0))?;
+    let fitted = Along::of(&begun, &augmented, direction)?;
+    let held = Along::of(&holdout_begun, &elsewhere, direction)?;
+    let fitted_traces = fitted.traces(&begun, &augmented)?;
+    let held_traces = held.traces(&holdout_begun, &elsewhere)?;
     let typically_misses = written.effects.is_empty() && {
-        let (fitted, held) = ((&*estimation, &*fitted_traces), (&*holdout, &*held_traces));
+        let (fitted, held) = ((&*begun, &*fitted_traces), (&*holdout_begun, &*held_traces));
         Typical::of(augmented.base(), fitted, held)?.is_missed(question.limits.matters_above_n)
     };
     let periodic = periodic::periodic(fitted_traces.par_iter().chain(&held_traces));
@@ -288,13 +300,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let Written { mut entries, effects, empirical, kept, .. } = written;
     let kept_to_fitted = kept.map(|kept| KeptToFitted { everywhere: rig::beside(&rig, &kept.everywhere), ..kept });
     entries.splice(0..0, rig.iter().map(rig::entry));
-    for (index, prepared) in estimation.iter_mut().enumerate() {
-        prepared.begin_with(&augmented, model.direction, index)?;
-    }
-    let elsewhere = augmented.elsewhere();
-    for prepared in &mut holdout {
-        prepared.begin_with(&elsewhere, model.direction, 0)?;
-    }
+    let (estimation, holdout) = (begun, holdout_begun);
     let diagnosis = Diagnosis {
         verdict,
         // Said once the models are compared at the rate of the recordings.
@@ -325,6 +331,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         at_bound,
         estimation,
         holdout,
+        fitted,
+        held,
         model,
         config,
     };

@@ -6,7 +6,7 @@
 
 use pam_identification::evaluate::noise_floor_n;
 use pam_identification::faults::reading::{self, MISSES, Reading, Wrong};
-use pam_identification::trace::{Trace, trace, trace_augmented};
+use pam_identification::trace::{Trace, trace};
 
 use crate::artifact::{Agreement, together};
 use crate::coverage::Coverage;
@@ -58,11 +58,11 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
     let fitted_n = together(&agreement.estimation).rmse_n;
     let base_n = together(&agreement.base_estimation).rmse_n;
     let mut held = Held::default();
-    for (index, prepared) in diagnosis.holdout.iter().enumerate() {
+    let traces = diagnosis.held.traces(&diagnosis.holdout, &model)?;
+    for ((index, prepared), trace) in diagnosis.holdout.iter().enumerate().zip(traces) {
         let (left_n, base_left_n) = (agreement.holdout.each[index].rmse_n, agreement.base_holdout.each[index].rmse_n);
         let floor_n = noise_floor_n(std::slice::from_ref(prepared), model.base())?;
         let own_n = fitted_n.max(floor_n).max(diagnosis.sizes.sensors_n);
-        let trace = trace_augmented(prepared, &model, diagnosis.model.direction, index)?;
         let path = &prepared.recording.path;
         let within = coverage.within(&trace);
         let share_within = within.time_s.len() as f64 / trace.time_s.len().max(1) as f64;

@@ -133,10 +133,11 @@ impl InertialTransient {
                 let mut lines: Vec<Line> = Vec::new();
                 walk_augmented(prepared, model, thresholds, index, &mut |instant, model_n| {
                     if instant.moment.step_s == 0.0 || lines.is_empty() {
-                        lines.push(Line { recording: index, first_row: instant.row, ..Line::default() });
+                        let n_rows = prepared.recording.segments.get(lines.len()).map_or(0, ExactSizeIterator::len);
+                        lines.push(Line::of_rows(n_rows, index, instant));
                     }
                     if let Some(line) = lines.last_mut() {
-                        line.times_s.push(instant.moment.time_s);
+                        line.ends_s[1] = instant.moment.time_s;
                         line.accelerations.push(instant.moment.acceleration_m_per_s2);
                         line.speeds.push(instant.moment.speed_m_per_s);
                         line.knees.push(instant.knee);
@@ -314,7 +315,7 @@ mod tests {
             let bend = |row: usize| place(row + 1) - 2.0 * place(row) + place(row.max(1) - 1);
             let averaged: f64 =
                 weights.iter().enumerate().map(|(index, weight)| weight * bend((at + index).max(half) - half)).sum();
-            line.times_s.push(at as f64 * PERIOD_S);
+            line.ends_s[1] = at as f64 * PERIOD_S;
             line.accelerations.push(averaged / (PERIOD_S * PERIOD_S));
             line.speeds.push((place(at + 8) - place(at.max(8) - 8)) / (16.0 * PERIOD_S));
             line.knees.push(false);
@@ -327,7 +328,7 @@ mod tests {
         let line = line(pull);
         let knocks = line.knocks(Residual::WithSpeed);
         assert!(knocks.len() >= 40, "{}", knocks.len());
-        InertialTransient::fitted(&knocks, line.times_s.len(), 0.05, Residual::WithSpeed)
+        InertialTransient::fitted(&knocks, line.accelerations.len(), 0.05, Residual::WithSpeed)
     }
 
     #[test]

@@ -1,12 +1,9 @@
 //! Recordings along a diagnosis: what was measured, what base and augmented model say, and the coordinates that a residual
 //! is laid out over.
 
-use pam_identification::error::IdentifyError;
-use pam_identification::predict::walk_augmented;
+use pam_identification::along::Along;
 use pam_identification::prepare::Prepared;
-use pam_muscle::effects::{AugmentedModel, Moment};
 use pam_muscle::motion::Instant;
-use rayon::prelude::*;
 
 use crate::coordinates::{History, moving_limits};
 use crate::diagnose::Diagnosis;
@@ -43,69 +40,48 @@ pub struct Trace {
 }
 
 /// Every recording of `diagnosis`, estimation first, in at most `most` samples each.
-///
-/// # Errors
-/// [`IdentifyError::Samples`] where samples cannot be read back.
-pub fn traces(diagnosis: &Diagnosis, most: usize) -> Result<Vec<Trace>, IdentifyError> {
-    let elsewhere = diagnosis.augmented.elsewhere();
-    let walk = |model: &AugmentedModel, recordings: &[Prepared]| -> Result<Vec<Walked>, IdentifyError> {
-        recordings
-            .par_iter()
-            .enumerate()
-            .map(|(index, prepared)| walked(diagnosis, prepared, model, index, most))
-            .collect()
+pub fn traces(diagnosis: &Diagnosis, most: usize) -> Vec<Trace> {
+    let of_all = |recordings: &[Prepared], along: &Along, held_out: bool| -> Vec<Trace> {
+        let thinned: Vec<Samples> = along.samples.iter().map(|samples| thinned(samples, most)).collect();
+        let limits = moving_limits(thinned.iter().flatten().map(|(instant, _)| &instant.moment));
+        let each = recordings.iter().zip(&thinned);
+        each.map(|(prepared, samples)| Trace {
+            path: prepared.recording.path.clone(),
+            held_out,
+            ..laid_out(diagnosis, samples, limits)
+        })
+        .collect()
     };
-    let estimation = walk(&diagnosis.augmented, &diagnosis.estimation)?;
-    let holdout = walk(&elsewhere, &diagnosis.holdout)?;
-    let limits = moving_limits(moments(&estimation));
-    let held_limits = moving_limits(moments(&holdout));
-    let trace = |(prepared, walked): (&Prepared, &Walked), held_out, limits| Trace {
-        path: prepared.recording.path.clone(),
-        held_out,
-        ..laid_out(diagnosis, walked, limits)
-    };
-    let fitted = diagnosis.estimation.iter().zip(&estimation).map(|pair| trace(pair, false, limits));
-    let held = diagnosis.holdout.iter().zip(&holdout).map(|pair| trace(pair, true, held_limits));
-    Ok(fitted.chain(held).collect())
+    let mut all = of_all(&diagnosis.estimation, &diagnosis.fitted, false);
+    all.extend(of_all(&diagnosis.holdout, &diagnosis.held, true));
+    all
 }
 
 /// Instants with the force of base model and effects.
-type Walked = Vec<(Instant, f64)>;
+type Samples = Vec<(Instant, f64)>;
 
-fn moments(walked: &[Walked]) -> impl Iterator<Item = &Moment> + Clone {
-    walked.iter().flat_map(|walked| walked.iter().map(|(instant, _)| &instant.moment))
-}
-
-fn walked(
-    diagnosis: &Diagnosis,
-    prepared: &Prepared,
-    model: &AugmentedModel,
-    index: usize,
-    most: usize,
-) -> Result<Walked, IdentifyError> {
-    let stride = prepared.recording.samples.n_rows().div_ceil(most.max(1)).max(1);
-    let mut walked = Vec::with_capacity(prepared.recording.samples.n_rows() / stride + 1);
-    // The first row behind a gap says so, whether its turn has come or not.
+/// At most `most` of `samples`. The first behind a gap says so, whether its turn has come or not.
+fn thinned(samples: &[(Instant, f64)], most: usize) -> Samples {
+    let stride = samples.len().div_ceil(most.max(1)).max(1);
+    let mut kept = Vec::with_capacity(samples.len() / stride + 1);
     let mut gap = false;
-    walk_augmented(prepared, model, diagnosis.model.direction, index, &mut |instant, model_n| {
+    for (at, (instant, model_n)) in samples.iter().enumerate() {
         gap |= instant.moment.step_s == 0.0;
-        if instant.row.is_multiple_of(stride) {
+        if at.is_multiple_of(stride) {
             let mut instant = *instant;
-            if gap {
+            if std::mem::take(&mut gap) {
                 instant.moment.step_s = 0.0;
             }
-            gap = false;
-            walked.push((instant, model_n));
+            kept.push((instant, *model_n));
         }
-    })
-    .map_err(|reason| IdentifyError::Samples { path: prepared.recording.path.clone(), reason })?;
-    Ok(walked)
+    }
+    kept
 }
 
-fn laid_out(diagnosis: &Diagnosis, walked: &Walked, limits: [f64; 2]) -> Trace {
+fn laid_out(diagnosis: &Diagnosis, samples: &Samples, limits: [f64; 2]) -> Trace {
     let mut trace = Trace::default();
     let mut history = History::new(limits);
-    for (instant, augmented_n) in walked {
+    for (instant, augmented_n) in samples {
         let moment = &instant.moment;
         history.push(moment);
         trace.time_s.push(moment.time_s);

@@ -70,7 +70,7 @@ pub(crate) fn left_n(traces: &[Trace]) -> f64 {
 mod tests {
     use super::*;
     use crate::given::tests::{STROKES, artifact, recorded};
-    use pam_identification::trace::traces_augmented;
+    use pam_identification::along::Along;
     use pam_muscle::effects::AugmentedModel;
 
     fn typical(fitted_n: f64, held_n: f64) -> Typical {
@@ -96,7 +96,8 @@ mod tests {
         let is_missed = |gain: f64| {
             let [fitted, held] = [1.0, gain].map(|gain| {
                 let prepared = [recorded("strokes.csv", STROKES, &model, gain)];
-                let traces = traces_augmented(&prepared, &written, model.direction).expect("traces");
+                let along = Along::of(&prepared, &written, model.direction).expect("an evaluation");
+                let traces = along.traces(&prepared, &written).expect("traces");
                 (prepared, traces)
             });
             let typical = Typical::of(written.base(), (&fitted.0, &fitted.1), (&held.0, &held.1));

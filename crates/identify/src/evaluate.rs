@@ -16,7 +16,7 @@ use crate::predict::walk_augmented;
 use crate::prepare::Prepared;
 pub use crate::tally::NoForceAt;
 pub(crate) use crate::tally::Tally;
-use crate::trace::{every, stride_of, trace_stride};
+use crate::trace::{every, stride_of};
 
 /// Statistics of every recording and of all together.
 #[derive(Debug, Clone)]
@@ -64,34 +64,8 @@ pub fn evaluate_augmented(
     Ok(Evaluation::of(&tallies?))
 }
 
-/// The same, with what is left of the samples of each recording in N, as much as a trace holds of them; zero where they are
-/// not counted.
-///
-/// # Errors
-/// As [`evaluate`].
-pub fn evaluate_residuals(
-    recordings: &[Prepared],
-    model: &AugmentedModel,
-    thresholds: Thresholds,
-) -> Result<(Evaluation, Vec<Vec<f64>>), IdentifyError> {
-    let walked = |(index, prepared): (usize, &Prepared)| {
-        let stride = trace_stride(prepared);
-        let mut residuals_n = Vec::new();
-        let tally = tally_augmented(prepared, model, thresholds, index, &mut |instant, model_n| {
-            if instant.row.is_multiple_of(stride) {
-                residuals_n.push(if instant.settled { instant.force_n - model_n } else { 0.0 });
-            }
-        })?;
-        Ok((tally, residuals_n))
-    };
-    let walked: Result<Vec<(Tally, Vec<f64>)>, IdentifyError> = recordings.par_iter().enumerate().map(walked).collect();
-    let (tallies, residuals_n): (Vec<Tally>, Vec<Vec<f64>>) = walked?.into_iter().unzip();
-    let evaluation = if model.is_plain() { evaluate(recordings, model.base())? } else { Evaluation::of(&tallies) };
-    Ok((evaluation, residuals_n))
-}
-
 /// Agreement of one recording, each row of which `visit` sees with the modelled force in N.
-fn tally_augmented(
+pub(crate) fn tally_augmented(
     prepared: &Prepared,
     model: &AugmentedModel,
     thresholds: Thresholds,

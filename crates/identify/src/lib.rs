@@ -7,6 +7,7 @@
 //! recordings, [`prediction`] row by row with the interval of [`band`]; [`geometry`] and [`robust`] are the slower ways with freed dimensions and robust weights;
 //! [`identify`] is all of it in order, and [`shards`] the same over rows in several places.
 
+pub mod along;
 pub mod band;
 mod check;
 pub mod condense;

@@ -198,14 +198,15 @@ impl Prepared {
     ) -> Result<(), IdentifyError> {
         let unknown = self.direction.unknown_until().filter(|_| self.recording.samples.has_force());
         let Some(n_rows) = unknown else { return Ok(()) };
-        let mut forces_n = [Vec::new(), Vec::new()];
-        for (forces_n, state) in forces_n.iter_mut().zip([0.0, 1.0]) {
-            self.direction.assume(state);
-            walk_rows(self, model, thresholds, index, n_rows, &mut |_, _, model_n| forces_n.push(model_n))
-                .map_err(|reason| self.unreadable(reason))?;
-        }
-        let [neither_n, one_n] = &forces_n;
-        self.begin_where(thresholds.standstill, &|row, _, _| [neither_n[row], one_n[row]])
+        self.direction.assume(0.0);
+        let mut forces_n = Vec::with_capacity(n_rows);
+        let mut contracting = model.start_in(index);
+        walk_rows(self, model, thresholds, index, n_rows, &mut |instant, moment, neither_n| {
+            let direction = if self.direction.is_known(instant.row) { moment.direction } else { 1.0 };
+            forces_n.push([neither_n, contracting.force_n(model, Moment { direction, ..*moment })]);
+        })
+        .map_err(|reason| self.unreadable(reason))?;
+        self.begin_where(thresholds.standstill, &|row, _, _| forces_n[row])
     }
 }
 

@@ -6,7 +6,6 @@ use pam_muscle::direction::Thresholds;
 use pam_muscle::effects::AugmentedModel;
 use pam_muscle::force::ForceModel;
 use pam_recording::CHUNK_ROWS;
-use rayon::prelude::*;
 
 use crate::error::IdentifyError;
 use crate::predict::walk_augmented;
@@ -49,19 +48,6 @@ impl Trace {
             settled: kept.iter().map(|&at| self.settled[at]).collect(),
         }
     }
-}
-
-/// Samples of every one of `recordings` beside what `model` with its effects says.
-///
-/// # Errors
-/// [`IdentifyError::Samples`] where samples cannot be read back.
-pub fn traces_augmented(
-    recordings: &[Prepared],
-    model: &AugmentedModel,
-    thresholds: Thresholds,
-) -> Result<Vec<Trace>, IdentifyError> {
-    let each = recordings.par_iter().enumerate();
-    each.map(|(index, prepared)| trace_augmented(prepared, model, thresholds, index)).collect()
 }
 
 /// Samples of `prepared` beside what `model` says.

@@ -114,20 +114,20 @@ fn found(path: &[f64], window: &Window, noise: f64) -> Vec<Knee> {
     let (first, end) = (half, path.len() - half);
     let gate = BEND * noise * window.curvature_noise();
     let mut sliding = Sliding::along(window, path);
-    let mut curvature = |row: usize| sliding.parabola(row).curvature;
     let mut row = first;
     while row < end {
         let (start, mut peak, mut highest) = (row, row, 0.0);
-        let sign = curvature(row).signum();
-        while row < end {
-            let bend = sign * curvature(row);
-            if bend <= gate {
-                break;
-            }
+        let begins = sliding.curvature(row);
+        let (sign, mut bend) = (begins.signum(), begins.abs());
+        while bend > gate {
             if bend > highest {
                 (peak, highest) = (row, bend);
             }
             row += 1;
+            if row == end {
+                break;
+            }
+            bend = sign * sliding.curvature(row);
         }
         // A longer bend is one that lasts.
         if row > start && row - start <= 3 * half {

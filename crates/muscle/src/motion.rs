@@ -102,7 +102,7 @@ pub fn walk(
                 })
                 .collect();
             for local in stretches?.into_iter().flatten() {
-                visit(path.on_to(local, index, origin_s));
+                visit(path.on_to(&local, index, origin_s));
             }
         }
     }
@@ -197,7 +197,7 @@ impl<'a> View<'a> {
                     lengths.smooth_near_knee(windows, at).unwrap_or(sharp_length),
                 ]
             };
-            let smooth_force_n = forces.parabola(at).value;
+            let smooth_force_n = forces.value(at);
             let average_m = lengths.average(average, at);
             locals.push(Local {
                 instant: Instant {
@@ -263,8 +263,8 @@ impl Followed {
     }
 
     /// The instant of the next row of recording `index`, which began at `origin_s`.
-    fn on_to(&mut self, local: Local, index: usize, origin_s: f64) -> Instant {
-        let Local { instant, average_pa, average_m, slide_m_per_pa, sharp_pa_per_s, sharp_m_per_s, resting } = local;
+    fn on_to(&mut self, local: &Local, index: usize, origin_s: f64) -> Instant {
+        let Local { instant, average_pa, average_m, slide_m_per_pa, sharp_pa_per_s, sharp_m_per_s, resting } = *local;
         let time_s = instant.moment.time_s;
         let (step_s, pressure_step_pa) =
             self.last.map_or((0.0, 0.0), |(last_s, last_pa)| (time_s - last_s, average_pa - last_pa));
@@ -391,12 +391,11 @@ struct Sharp<'a> {
 impl Sharp<'_> {
     fn at(&mut self, at: usize) -> Parabola {
         let [near, window] = &mut self.windows;
-        let Parabola { value, curvature, .. } = near.parabola(at);
         let knees = &self.path.knees;
         Parabola {
-            value: value + knees.added(at),
-            slope: window.parabola(at).slope + knees.rate(at),
-            curvature: curvature + knees.bend(at),
+            value: near.value(at) + knees.added(at),
+            slope: window.slope(at) + knees.rate(at),
+            curvature: near.curvature(at) + knees.bend(at),
         }
     }
 }

@@ -78,18 +78,36 @@ impl Window {
 
     /// The parabola of `sums`, those around row `center`, at row `at`.
     fn carried_on(&self, channel: &[f64], at: usize, center: usize, sums: &Sums) -> Parabola {
-        let Sums { origin, sum, first, second } = *sums;
-        let n = (2 * self.half + 1) as f64;
-        let determinant = n * self.sum4 - self.sum2 * self.sum2;
-        let c0 = (self.sum4 * sum - self.sum2 * second) / determinant;
-        let c1 = first / self.sum2;
-        let c2 = (n * second - self.sum2 * sum) / determinant;
         let u = at as f64 - center as f64;
+        let (c1, c2) = (self.first_order(sums), self.second_order(sums));
         Parabola {
-            value: origin + c0 + c1 * u + c2 * u * u,
+            value: self.middle(sums) + c1 * u + c2 * u * u,
             slope: if u == 0.0 { c1 / self.period_s } else { self.slope_near_end(channel, at) },
-            curvature: 2.0 * c2 / (self.period_s * self.period_s),
+            curvature: self.bend(sums),
         }
+    }
+
+    /// `n Σ u⁴ - (Σ u²)²`.
+    fn determinant(&self) -> f64 {
+        (2 * self.half + 1) as f64 * self.sum4 - self.sum2 * self.sum2
+    }
+
+    /// Value of the parabola of `sums` in the middle of its window.
+    fn middle(&self, sums: &Sums) -> f64 {
+        sums.origin + (self.sum4 * sums.sum - self.sum2 * sums.second) / self.determinant()
+    }
+
+    fn first_order(&self, sums: &Sums) -> f64 {
+        sums.first / self.sum2
+    }
+
+    fn second_order(&self, sums: &Sums) -> f64 {
+        ((2 * self.half + 1) as f64 * sums.second - self.sum2 * sums.sum) / self.determinant()
+    }
+
+    /// Its curvature, per second squared.
+    fn bend(&self, sums: &Sums) -> f64 {
+        2.0 * self.second_order(sums) / (self.period_s * self.period_s)
     }
 
     /// The slope at a row nearer to an end than half a window: that of the widest window around it, where the parabola
@@ -168,9 +186,42 @@ impl<'a> Sliding<'a> {
     /// As [`Window::parabola`].
     pub(crate) fn parabola(&mut self, at: usize) -> Parabola {
         let Self { window, channel, .. } = *self;
+        match self.slide_to(at) {
+            Some(center) => window.carried_on(channel, at, center, &self.sums),
+            None => short(channel, at),
+        }
+    }
+
+    /// Its value alone, at less than half the cost.
+    pub(crate) fn value(&mut self, at: usize) -> f64 {
+        match self.slide_to(at) {
+            Some(center) if center == at => self.window.middle(&self.sums),
+            _ => self.parabola(at).value,
+        }
+    }
+
+    /// Its slope alone, per second.
+    pub(crate) fn slope(&mut self, at: usize) -> f64 {
+        match self.slide_to(at) {
+            Some(center) if center == at => self.window.first_order(&self.sums) / self.window.period_s,
+            _ => self.parabola(at).slope,
+        }
+    }
+
+    /// Its curvature alone, per second squared.
+    pub(crate) fn curvature(&mut self, at: usize) -> f64 {
+        match self.slide_to(at) {
+            Some(_) => self.window.bend(&self.sums),
+            None => self.parabola(at).curvature,
+        }
+    }
+
+    /// Slides to the window that tells of row `at`; its middle, or none where the channel is shorter.
+    fn slide_to(&mut self, at: usize) -> Option<usize> {
+        let Self { window, channel, .. } = *self;
         let half = window.half;
         if channel.len() <= 2 * half {
-            return short(channel, at);
+            return None;
         }
         let center = window.around(at, channel.len()).start + half;
         let anew = (center - center % ANEW).max(half);
@@ -186,7 +237,7 @@ impl<'a> Sliding<'a> {
             row += 1;
         }
         self.center = Some(center);
-        window.carried_on(channel, at, center, &self.sums)
+        Some(center)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use pam_muscle::effects::Mount;
+use pam_muscle::motion::Instant;
 use pam_muscle::smoothing::acceleration_weights;
 
 use super::Residual;
@@ -20,7 +21,8 @@ pub(super) struct Line {
     /// Number of the recording, and the first row of the segment in it.
     pub(super) recording: usize,
     pub(super) first_row: usize,
-    pub(super) times_s: Vec<f64>,
+    /// Times of the first and the last row, in s.
+    pub(super) ends_s: [f64; 2],
     /// In m/s².
     pub(super) accelerations: Vec<f64>,
     /// In m/s.
@@ -46,11 +48,26 @@ pub(super) struct Knock {
 }
 
 impl Line {
+    /// Nothing yet of `n_rows` rows of recording `recording`, of which `first` is the first.
+    pub(super) fn of_rows(n_rows: usize, recording: usize, first: &Instant) -> Self {
+        let column = || Vec::with_capacity(n_rows);
+        Self {
+            recording,
+            first_row: first.row,
+            ends_s: [first.moment.time_s; 2],
+            accelerations: column(),
+            speeds: column(),
+            residuals_n: column(),
+            knees: Vec::with_capacity(n_rows),
+        }
+    }
+
     pub(super) fn knocks(&self, residual: Residual) -> Vec<Knock> {
-        let n = self.times_s.len();
-        let Some(period_s) = (n > 1).then(|| (self.times_s[n - 1] - self.times_s[0]) / (n - 1) as f64) else {
+        let (n, [first_s, last_s]) = (self.accelerations.len(), self.ends_s);
+        if n < 2 {
             return Vec::new();
-        };
+        }
+        let period_s = (last_s - first_s) / (n - 1) as f64;
         let weights = acceleration_weights(period_s);
         let half = weights.len() / 2 + 1;
         let (before, after) = (8 * half, 4 * half);

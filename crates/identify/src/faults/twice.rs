@@ -4,6 +4,7 @@
 //! samples tell, not its name: see [`first_shared`].
 
 use pam_recording::{Recording, first_shared, repeats_itself};
+use rayon::prelude::*;
 
 use crate::error::IdentifyError;
 
@@ -30,12 +31,11 @@ pub fn check(estimation: &[Recording], holdout: &[Recording]) -> Result<(), Iden
 ///
 /// # Errors
 /// [`IdentifyError::Samples`] where samples cannot be read back.
-pub fn repeated<'a>(recordings: impl Iterator<Item = &'a Recording>) -> Result<Vec<String>, IdentifyError> {
-    let mut words = Vec::new();
-    for recording in recordings {
+pub fn repeated(recordings: &[&Recording]) -> Result<Vec<String>, IdentifyError> {
+    let of_one = |recording: &&Recording| {
         let repeated = repeats_itself(recording);
         let repeated = repeated.map_err(|reason| IdentifyError::Samples { path: recording.path.clone(), reason })?;
-        words.extend(repeated.map(|found| {
+        Ok(repeated.map(|found| {
             format!(
                 "{}: rows from {} on stand there once more from {} on, noise and all ({} % of the recording): they count twice, and \
                  standard errors are too small; cut one of the two out",
@@ -44,7 +44,8 @@ pub fn repeated<'a>(recordings: impl Iterator<Item = &'a Recording>) -> Result<V
                 found.again + 1,
                 found.percent
             )
-        }));
-    }
-    Ok(words)
+        }))
+    };
+    let words: Result<Vec<Option<String>>, IdentifyError> = recordings.par_iter().map(of_one).collect();
+    Ok(words?.into_iter().flatten().collect())
 }

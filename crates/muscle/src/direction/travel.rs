@@ -112,7 +112,7 @@ impl Path {
             let window = Window::over(&time_s[from..to], half as f64 * period_s);
             let mut sliding = Sliding::along(&window, piece);
             let rows = before.map_or(0, |bend| bend.row)..after.map_or(n_rows, |bend| bend.row);
-            travels_m.extend(rows.map(|row| sliding.parabola(row - from).value));
+            travels_m.extend(rows.map(|row| sliding.value(row - from)));
         }
         let slow_turns = slow_turns(shortening, turns, &bends, (longest, SlowTurn::longest(period_s)), noise_m);
         for turn in &slow_turns {
