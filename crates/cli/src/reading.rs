@@ -1,6 +1,7 @@
 //! Recordings read under the eyes of a person.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use pam_recording::{ReadError, ReadOptions, Recording, read_recording_observed};
 
@@ -26,8 +27,8 @@ pub fn read_recordings(
 ) -> Result<Vec<Recording>, ReadError> {
     let mut recordings = Vec::new();
     let mut notes: Vec<(String, Vec<String>)> = Vec::new();
-    for path in paths {
-        let recording = read_recording(path, options, console)?;
+    for recording in read_each(paths, options, console) {
+        let recording = recording?;
         let mut said = recording.repairs.notes();
         if !recording.ignored_columns.is_empty() {
             said.push(format!("not used: {}", recording.ignored_columns.join(", ")));
@@ -49,4 +50,36 @@ pub fn read_recordings(
         console.note(format!("{}{others}: {words}", paths[0]));
     }
     Ok(recordings)
+}
+
+/// The recordings in order, up to the first that cannot be read, as many at a time as there are cores. Each on a thread of its own, and not on
+/// one that works for all: it may wait for a pipe.
+fn read_each(
+    paths: &[PathBuf],
+    options: &ReadOptions,
+    console: &Console,
+) -> impl Iterator<Item = Result<Recording, ReadError>> {
+    let next = Mutex::new(0..paths.len());
+    let read = Mutex::new(Vec::new());
+    let go_on = || {
+        loop {
+            let index = next.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some(index) = index else { break };
+            let recording = read_recording(&paths[index], options, console);
+            if recording.is_err() {
+                *next.lock().unwrap_or_else(PoisonError::into_inner) = 0..0;
+            }
+            read.lock().unwrap_or_else(PoisonError::into_inner).push((index, recording));
+        }
+    };
+    std::thread::scope(|scope| {
+        let others = std::thread::available_parallelism().map_or(1, usize::from).min(paths.len()).saturating_sub(1);
+        (0..others).for_each(|_| {
+            scope.spawn(go_on);
+        });
+        go_on();
+    });
+    let mut read = read.into_inner().unwrap_or_else(PoisonError::into_inner);
+    read.sort_by_key(|(index, _)| *index);
+    read.into_iter().map(|(_, recording)| recording)
 }

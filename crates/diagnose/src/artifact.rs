@@ -66,7 +66,7 @@ impl Agreement {
             (None, None) => None,
         };
         Ok(Self {
-            base_estimation: evaluate(&as_base(estimation)?, base)?,
+            base_estimation: diagnosis.base_fitted.clone(),
             base_holdout,
             holdout_without_terms,
             holdout_everywhere: match &diagnosis.kept_to_fitted {

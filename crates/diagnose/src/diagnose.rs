@@ -7,7 +7,7 @@ use pam_artifact::diagnosis::{
 };
 use pam_artifact::model::EffectEntry;
 use pam_identification::along::Along;
-use pam_identification::evaluate::{evaluate, noise_floor_n};
+use pam_identification::evaluate::{Evaluation, evaluate, noise_floor_n};
 use pam_identification::prepare::{Prepared, begun_at_rest};
 use pam_muscle::effects::{AugmentedModel, Effect, Term};
 use pam_muscle::force::ForceModel;
@@ -103,6 +103,8 @@ pub struct Diagnosis {
     pub periodic: Option<Periodic>,
     /// Base model refitted to the estimation recordings.
     pub base: ForceModel,
+    /// How well it agrees with them.
+    pub base_fitted: Evaluation,
     /// Base model and effects.
     pub augmented: AugmentedModel,
     /// What of it acts in the estimation recordings alone, since held-out ones are followed worse with it.
@@ -301,6 +303,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let kept_to_fitted = kept.map(|kept| KeptToFitted { everywhere: rig::beside(&rig, &kept.everywhere), ..kept });
     entries.splice(0..0, rig.iter().map(rig::entry));
     let (estimation, holdout) = (begun, holdout_begun);
+    let (base, base_fitted) = better_base(&estimation, &model, &found.base.state.model)?;
     let diagnosis = Diagnosis {
         verdict,
         // Said once the models are compared at the rate of the recordings.
@@ -321,7 +324,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         sizes,
         typically_misses,
         periodic,
-        base: better_base(&estimation, &model, &found.base.state.model)?,
+        base,
+        base_fitted,
         augmented,
         kept_to_fitted,
         entries,
@@ -340,16 +344,18 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
 }
 
 /// The base model that leaves less on the recordings at their full rate: as it was identified, if that was on these, or as
-/// refitted on the grid. What effects buy is never measured against the worse one.
+/// refitted on the grid, and how well it agrees with them. What effects buy is never measured against the worse one.
 fn better_base(
     estimation: &[Prepared],
     model: &ModelArtifact,
     refitted: &ForceModel,
-) -> Result<ForceModel, DiagnoseError> {
-    let (identified, standstill) = (model.force_model(), model.direction.standstill);
-    let rmse_n = |model: &ForceModel| -> Result<f64, DiagnoseError> {
-        let begun = begun_at_rest(estimation, model, standstill)?;
-        Ok(evaluate(&begun, model)?.together.map_or(f64::INFINITY, |together| together.rmse_n))
+) -> Result<(ForceModel, Evaluation), DiagnoseError> {
+    let evaluated = |base: ForceModel| -> Result<(ForceModel, Evaluation), DiagnoseError> {
+        let begun = begun_at_rest(estimation, &base, model.direction.standstill)?;
+        let evaluation = evaluate(&begun, &base)?;
+        Ok((base, evaluation))
     };
-    Ok(if rmse_n(&identified)? <= rmse_n(refitted)? { identified } else { refitted.clone() })
+    let rmse_n = |evaluation: &Evaluation| evaluation.together.map_or(f64::INFINITY, |together| together.rmse_n);
+    let (identified, refitted) = (evaluated(model.force_model())?, evaluated(refitted.clone())?);
+    Ok(if rmse_n(&identified.1) <= rmse_n(&refitted.1) { identified } else { refitted })
 }
