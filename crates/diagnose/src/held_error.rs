@@ -4,6 +4,7 @@ use pam_identification::prepare::Prepared;
 use pam_identification::trace::trace_augmented;
 use pam_muscle::direction::Thresholds;
 use pam_muscle::effects::AugmentedModel;
+use rayon::prelude::*;
 
 use crate::track::Track;
 
@@ -53,7 +54,7 @@ impl Left {
             let recorded = samples.filter(|((force_n, _), _)| force_n.is_finite());
             Some(recorded.map(|((force_n, model_n), &settled)| (force_n - model_n, settled)).collect())
         };
-        let each: Option<Vec<Vec<(f64, bool)>>> = held.iter().enumerate().map(missed_n).collect();
+        let each: Option<Vec<Vec<(f64, bool)>>> = held.par_iter().enumerate().map(missed_n).collect();
         Some(Self::of_each(each?.into_iter()))
     }
 

@@ -452,7 +452,7 @@ mod tests {
     use crate::direction::{Driver, Standstill};
     use crate::force::{BaseParameters, Form};
     use crate::geometry::tests::nominal;
-    use pam_recording::{ReadOptions, read_recording};
+    use pam_recording::{ReadOptions, Repairs, Samples, read_recording};
     use rand::SeedableRng;
     use rand_distr::{Distribution, Normal};
     use std::fmt::Write as _;
@@ -504,6 +504,56 @@ mod tests {
             assert!(near(first.length_m, whole.length_m, 1.0) && near(first.speed_m_per_s, whole.speed_m_per_s, 1.0));
             assert!(near(first.slide_m, whole.slide_m, 1.0) && near(first.pressure_pa, whole.pressure_pa, 1e5));
         }
+    }
+
+    #[test]
+    fn where_a_stretch_ends_changes_nothing_of_what_is_seen() {
+        // Strokes of a second with half a second of rest, at 1 kHz.
+        let normal = Normal::new(0.0, 1.0).unwrap();
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(7);
+        let rows: Vec<[f64; 3]> = (0..40_000)
+            .map(|row| {
+                let t = 1e-3 * f64::from(row);
+                // A stretch ends eight rows behind a start, or behind an end.
+                let since = (t + 0.24) % 3.0;
+                let stroke = since.min(1.0) - (since - 1.5).clamp(0.0, 1.0);
+                let pressure_pa = 3e5 + 2e4 * (t % 1.5) + 500.0 * normal.sample(&mut generator);
+                [t, pressure_pa, 0.27 - 0.02 * stroke + 3e-5 * normal.sample(&mut generator)]
+            })
+            .collect();
+        let from = |first: usize| {
+            let [time_s, pressure_pa, length_m] = [0, 1, 2].map(|at| rows[first..].iter().map(|row| row[at]).collect());
+            let time_s: Vec<f64> = time_s;
+            let (pressure_pa, length_m): (Vec<f64>, Vec<f64>) = (pressure_pa, length_m);
+            let n_rows = time_s.len();
+            let recording = Recording {
+                path: "strokes.csv".to_owned(),
+                sha256: String::new(),
+                samples: Samples::from_columns(&time_s, &pressure_pa, &length_m, &vec![100.0; n_rows]),
+                segments: vec![0..n_rows; 1],
+                repairs: Repairs::default(),
+                ignored_columns: Vec::new(),
+            };
+            let direction = Direction::nothing(n_rows);
+            let mut instants = Vec::new();
+            let mut visit = |instant| instants.push(instant);
+            walk(&recording, &direction, THRESHOLDS, &base(), 0, n_rows, 1, Channels::Recorded, &mut visit).unwrap();
+            instants
+        };
+        let (whole, late) = (from(0), from(4000));
+        let mut knees = 0;
+        for (late, whole) in late.iter().zip(&whole[4000..]).take(35_900).skip(100) {
+            knees += usize::from(whole.knee);
+            assert_eq!(late.knee, whole.knee, "row {}", whole.row);
+            let near = |late: f64, whole: f64, unit: f64| (late - whole).abs() < 1e-9 * unit;
+            let (late, whole) = (&late.moment, &whole.moment);
+            assert!(near(late.speed_m_per_s, whole.speed_m_per_s, 1.0));
+            assert!(near(late.acceleration_m_per_s2, whole.acceleration_m_per_s2, 1e3));
+            assert!(near(late.pressure_rate_pa_per_s, whole.pressure_rate_pa_per_s, 1e5));
+            // Where the length rests, that of the pressure.
+            assert!(near(late.slide_speed_m_per_s, whole.slide_speed_m_per_s, 1.0));
+        }
+        assert!(knees > 20, "{knees}");
     }
 
     #[test]
