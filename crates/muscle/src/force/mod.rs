@@ -208,8 +208,9 @@ impl ForceModel {
         let diameter_m = self.kinematics.diameter_m(length_m);
         let [by_c10, by_c01] = self.bladder.columns_at(length_m, diameter_m);
         let normal_n = rubber_friction::normal_force_n(pressure_pa, diameter_m, length_m);
-        // A cube root, which most models have no use for.
-        let contact_n = if strand == 0.0 { 0.0 } else { strand * self.contact.force_n(pressure_pa, normal_n) };
+        // A cube root, which most models have no use for, and none where friction pulls neither way.
+        let rubs = strand != 0.0 && direction != 0.0;
+        let contact_n = if rubs { strand * self.contact.force_n(pressure_pa, normal_n) } else { 0.0 };
         let friction_n = rubber * normal_n + contact_n;
         Terms {
             gas_n: self.gas.force_n(pressure_pa, self.kinematics.contraction_ratio(length_m), k1, k2),
