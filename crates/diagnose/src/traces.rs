@@ -42,7 +42,7 @@ pub struct Trace {
 /// Every recording of `diagnosis`, estimation first, in at most `most` samples each.
 pub fn traces(diagnosis: &Diagnosis, most: usize) -> Vec<Trace> {
     let of_all = |recordings: &[Prepared], along: &Along, held_out: bool| -> Vec<Trace> {
-        let thinned: Vec<Samples> = along.samples.iter().map(|samples| thinned(samples, most)).collect();
+        let thinned = along.thinned(most);
         let limits = moving_limits(thinned.iter().flatten().map(|(instant, _)| &instant.moment));
         let each = recordings.iter().zip(&thinned);
         each.map(|(prepared, samples)| Trace {
@@ -57,28 +57,8 @@ pub fn traces(diagnosis: &Diagnosis, most: usize) -> Vec<Trace> {
     all
 }
 
-/// Instants with the force of base model and effects.
-type Samples = Vec<(Instant, f64)>;
-
-/// At most `most` of `samples`. The first behind a gap says so, whether its turn has come or not.
-fn thinned(samples: &[(Instant, f64)], most: usize) -> Samples {
-    let stride = samples.len().div_ceil(most.max(1)).max(1);
-    let mut kept = Vec::with_capacity(samples.len() / stride + 1);
-    let mut gap = false;
-    for (at, (instant, model_n)) in samples.iter().enumerate() {
-        gap |= instant.moment.step_s == 0.0;
-        if at.is_multiple_of(stride) {
-            let mut instant = *instant;
-            if std::mem::take(&mut gap) {
-                instant.moment.step_s = 0.0;
-            }
-            kept.push((instant, *model_n));
-        }
-    }
-    kept
-}
-
-fn laid_out(diagnosis: &Diagnosis, samples: &Samples, limits: [f64; 2]) -> Trace {
+/// `samples`, each an instant with the force of base model and effects.
+fn laid_out(diagnosis: &Diagnosis, samples: &[(Instant, f64)], limits: [f64; 2]) -> Trace {
     let mut trace = Trace::default();
     let mut history = History::new(limits);
     for (instant, augmented_n) in samples {

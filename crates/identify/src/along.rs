@@ -29,17 +29,9 @@ impl Along {
         let walked = |(index, prepared): (usize, &Prepared)| {
             let stride = trace_stride(prepared);
             let mut samples = Vec::with_capacity(prepared.recording.samples.n_rows().div_ceil(stride));
-            // The first row behind a gap need not be one that is kept.
-            let mut gap = false;
+            let mut thinning = Thinning::to_every(stride);
             let tally = tally_augmented(prepared, model, thresholds, index, &mut |instant, model_n| {
-                gap |= instant.moment.step_s == 0.0;
-                if instant.row.is_multiple_of(stride) {
-                    let mut instant = *instant;
-                    if std::mem::take(&mut gap) {
-                        instant.moment.step_s = 0.0;
-                    }
-                    samples.push((instant, model_n));
-                }
+                samples.extend(thinning.kept(instant.row, instant).map(|instant| (instant, model_n)));
             })?;
             Ok((tally, samples))
         };
@@ -47,6 +39,17 @@ impl Along {
         let (tallies, samples): (Vec<_>, Vec<_>) = walked?.into_iter().unzip();
         let evaluation = if model.is_plain() { evaluate(recordings, model.base())? } else { Evaluation::of(&tallies) };
         Ok(Self { evaluation, samples })
+    }
+
+    /// At most `most` samples of each recording, thinned out as they are.
+    pub fn thinned(&self, most: usize) -> Vec<Vec<(Instant, f64)>> {
+        let of_one = |samples: &Vec<(Instant, f64)>| {
+            let mut thinning = Thinning::to_every(samples.len().div_ceil(most.max(1)).max(1));
+            let kept =
+                |(at, (instant, model_n)): (usize, &(Instant, f64))| Some((thinning.kept(at, instant)?, *model_n));
+            samples.iter().enumerate().filter_map(kept).collect()
+        };
+        self.samples.iter().map(of_one).collect()
     }
 
     /// The samples as traces of the `recordings` that they are of.
@@ -67,6 +70,30 @@ impl Along {
         let left_n =
             |(instant, model_n): &(Instant, f64)| if instant.settled { instant.force_n - model_n } else { 0.0 };
         self.samples.iter().map(|samples| samples.iter().map(left_n).collect()).collect()
+    }
+}
+
+/// Keeps rows evenly. The first behind a gap need not be one of them; the next that is says so in its place.
+struct Thinning {
+    stride: usize,
+    gap: bool,
+}
+
+impl Thinning {
+    fn to_every(stride: usize) -> Self {
+        Self { stride, gap: false }
+    }
+
+    /// `instant`, number `at` in its recording, where it is kept.
+    fn kept(&mut self, at: usize, instant: &Instant) -> Option<Instant> {
+        self.gap |= instant.moment.step_s == 0.0;
+        at.is_multiple_of(self.stride).then(|| {
+            let mut instant = *instant;
+            if std::mem::take(&mut self.gap) {
+                instant.moment.step_s = 0.0;
+            }
+            instant
+        })
     }
 }
 
@@ -106,6 +133,9 @@ mod tests {
                 assert_eq!(along.residuals_n()[index].len(), trace.time_s.len());
                 let begins = along.samples[index].iter().filter(|(instant, _)| instant.moment.step_s == 0.0);
                 assert_eq!(begins.count(), 2, "of the recording and behind the gap");
+                let thinned = &along.thinned(70)[index];
+                let begins = thinned.iter().filter(|(instant, _)| instant.moment.step_s == 0.0);
+                assert_eq!((begins.count(), thinned.len() <= 70), (2, true));
             }
         }
     }

@@ -4,7 +4,7 @@
 //! [`faults`] looks for broken instruments, [`condense`] turns rows into small triangles in one pass,
 //! [`search_space`] says what is fitted within which range, [`problem`] is the cost over that space,
 //! [`fit`] searches it, [`uncertainty`] says how well the result is known, [`evaluate`] compares it with
-//! recordings, [`prediction`] row by row with the interval of [`band`]; [`geometry`] and [`robust`] are the slower ways with freed dimensions and robust weights;
+//! recordings, [`along`] leaves samples for figures beside that, [`prediction`] row by row with the interval of [`band`]; [`geometry`] and [`robust`] are the slower ways with freed dimensions and robust weights;
 //! [`identify`] is all of it in order, and [`shards`] the same over rows in several places.
 
 pub mod along;

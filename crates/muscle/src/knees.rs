@@ -72,8 +72,8 @@ impl Knees {
         let first = |bent: &Bent| (bent.knee.at.ceil() as usize).min(n_rows);
         let ends = self.bent.iter().skip(1).map(first).chain([n_rows]);
         for (bent, end) in self.bent.iter().zip(ends) {
-            for row in first(bent)..end {
-                path[row] -= bent.slope * row as f64 + bent.height;
+            for (row, value) in path.iter_mut().enumerate().take(end).skip(first(bent)) {
+                *value -= bent.slope * row as f64 + bent.height;
             }
         }
     }
