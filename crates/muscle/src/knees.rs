@@ -48,7 +48,9 @@ impl Knees {
         let mut all: Vec<Knee> = Vec::new();
         for window in windows {
             let found = Self::new(found(path, window, noise), window.period_s);
-            found.take_off(path);
+            if !found.bent.is_empty() {
+                path.iter_mut().enumerate().for_each(|(row, value)| *value -= found.added(row));
+            }
             all.extend(found.bent.iter().map(|bent| bent.knee));
         }
         all.sort_by(|left, right| left.at.total_cmp(&right.at));
@@ -64,18 +66,6 @@ impl Knees {
             Bent { knee, slope, height }
         });
         Self { bent: bent.collect(), period_s }
-    }
-
-    /// Takes off what they have added to `path`, row by row.
-    fn take_off(&self, path: &mut [f64]) {
-        let n_rows = path.len();
-        let first = |bent: &Bent| (bent.knee.at.ceil() as usize).min(n_rows);
-        let ends = self.bent.iter().skip(1).map(first).chain([n_rows]);
-        for (bent, end) in self.bent.iter().zip(ends) {
-            for (row, value) in path.iter_mut().enumerate().take(end).skip(first(bent)) {
-                *value -= bent.slope * row as f64 + bent.height;
-            }
-        }
     }
 
     /// Sum that the knees so far have added to the path at `row`.
