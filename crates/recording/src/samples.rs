@@ -137,6 +137,19 @@ impl Samples {
         Ok(sliced.with_sensor_ranges(self.sensor_ranges))
     }
 
+    /// Calls `visit` with every chunk that has some of `rows`, and which of its own rows those are.
+    ///
+    /// # Errors
+    /// Where the temporary file cannot be read.
+    pub fn for_rows(&self, rows: &Range<usize>, mut visit: impl FnMut(&Chunk, Range<usize>)) -> io::Result<()> {
+        for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
+            let chunk = self.chunk(index)?;
+            let (first, n) = (chunk.first_row, chunk.n_rows);
+            visit(&chunk, rows.start.max(first) - first..rows.end.min(first + n) - first);
+        }
+        Ok(())
+    }
+
     /// Every chunk in turn.
     pub fn chunks(&self) -> impl Iterator<Item = io::Result<Chunk>> + '_ {
         (0..self.n_chunks()).map(|index| self.chunk(index))

@@ -36,8 +36,12 @@ pub(crate) struct Desk {
 }
 
 impl Desk {
+    pub(crate) fn empty() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
     pub(crate) fn with(concealed: &[Concealed]) -> Self {
-        let desk = Self { folder: tempfile::tempdir().unwrap() };
+        let desk = Self::empty();
         let MuscleFile { muscle, strand_modulus_pa, .. } = muscle_file();
         let truth = TrueMuscle::new(muscle, strand_modulus_pa, Parameters::nominal());
         let options = Options { duration_scale: 0.1, ..Options::default() };
@@ -98,26 +102,9 @@ impl Desk {
     }
 
     pub(crate) fn identified_from(&self, names: &[&str]) -> ModelArtifact {
-        let request = Request {
-            estimation: names.iter().map(|name| self.recording(&format!("{name}.csv"))).collect(),
-            validation: Vec::new(),
-            muscle: muscle_file(),
-            form: Form::Corrected,
-            options: FitOptions { n_particles: 30, n_iterations: 60, n_starts: 1, seed: 1, polish: true },
-            loss: Loss::Square,
-            free: Vec::new(),
-            fix: Vec::new(),
-            length_play_m: None,
-            pressure_play_pa: None,
-            assumed: pam_artifact::model::Assumed::default(),
-            accept_implausible: true,
-            unbounded: false,
-        };
-        let checked = check(request).unwrap();
-        let config = checked.config();
-        let tool = Tool { name: "pam-identify".to_owned(), version: "0.1.0".to_owned() };
-        let input = Input { path: "muscle.toml".to_owned(), sha256: "0".repeat(64), role: InputRole::Muscle };
-        checked.identify().unwrap().artifact(tool, vec![input], config, 1)
+        let logs = names.iter().map(|name| self.recording(&format!("{name}.csv"))).collect();
+        let options = FitOptions { n_particles: 30, n_iterations: 60, n_starts: 1, seed: 1, polish: true };
+        identified(muscle_file(), logs, options)
     }
 
     pub(crate) fn run(&self, arguments: &str) -> Output {
@@ -158,6 +145,30 @@ impl Desk {
         assert_eq!(errors.len(), 1, "{arguments}: {stderr}");
         errors[0].to_owned()
     }
+}
+
+/// The model that a fit of `muscle` to `logs` finds.
+pub(crate) fn identified(muscle: MuscleFile, logs: Vec<Recording>, options: FitOptions) -> ModelArtifact {
+    let request = Request {
+        estimation: logs,
+        validation: Vec::new(),
+        muscle,
+        form: Form::Corrected,
+        options,
+        loss: Loss::Square,
+        free: Vec::new(),
+        fix: Vec::new(),
+        length_play_m: None,
+        pressure_play_pa: None,
+        assumed: pam_artifact::model::Assumed::default(),
+        accept_implausible: true,
+        unbounded: false,
+    };
+    let checked = check(request).unwrap();
+    let config = checked.config();
+    let tool = Tool { name: "pam-identify".to_owned(), version: "0.1.0".to_owned() };
+    let input = Input { path: "muscle.toml".to_owned(), sha256: "0".repeat(64), role: InputRole::Muscle };
+    checked.identify().unwrap().artifact(tool, vec![input], config, 1)
 }
 
 /// Rows of a recording, each changed: time s, pressure kPa, length mm, force N.

@@ -6,4 +6,5 @@ mod desk;
 mod effects;
 mod given;
 mod mistakes;
+mod real_muscles;
 mod terms;

@@ -7,7 +7,7 @@ use pam_artifact::agreement::CutRecording;
 use pam_artifact::summary::{Ends, Rows};
 use pam_muscle::direction::{Carried, Direction, Driver, Law, Piece, Thresholds};
 use pam_recording::quality::RecordingQuality;
-use pam_recording::{CHUNK_ROWS, Recording, Samples};
+use pam_recording::{Recording, Samples};
 
 use super::parts::Part;
 use crate::prepare::Prepared;
@@ -57,15 +57,12 @@ pub(super) fn samples_of(rows: &[&Rows]) -> Samples {
 pub(super) fn rows_of(samples: &Samples, first_row: usize, rows: Range<usize>) -> io::Result<Rows> {
     let mut handed = Rows { first_row: rows.start, ..Rows::default() };
     let rows = rows.start - first_row..rows.end - first_row;
-    for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
-        let chunk = samples.chunk(index)?;
-        let (first, n) = (chunk.first_row(), chunk.n_rows());
-        let here = rows.start.max(first) - first..rows.end.min(first + n) - first;
+    samples.for_rows(&rows, |chunk, here| {
         handed.time_s.extend_from_slice(&chunk.time_s()[here.clone()]);
         handed.pressure_pa.extend_from_slice(&chunk.pressure_pa()[here.clone()]);
         handed.length_m.extend_from_slice(&chunk.length_m()[here.clone()]);
         handed.force_n.extend_from_slice(&chunk.force_n()[here]);
-    }
+    })?;
     Ok(handed)
 }
 

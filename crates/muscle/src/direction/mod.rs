@@ -29,7 +29,7 @@
 use std::io;
 use std::ops::Range;
 
-use pam_recording::{CHUNK_ROWS, Chunk, Recording};
+use pam_recording::Recording;
 use rayon::prelude::*;
 
 mod carried;
@@ -241,7 +241,7 @@ impl Direction {
                 continue;
             }
             let (mut pressure_pa, mut without_n, mut with_n) = (Vec::new(), Vec::new(), Vec::new());
-            for_chunks(recording, &unknown, |chunk, rows| {
+            recording.samples.for_rows(&unknown, |chunk, rows| {
                 for row in rows {
                     let (pressure, length) = (chunk.pressure_pa()[row], chunk.length_m()[row]);
                     let [neither_n, one_n] = forces_n(chunk.first_row() + row, pressure, length);
@@ -324,26 +324,12 @@ fn go_on(stretch: &Stretch<'_>, thresholds: Thresholds, laws: &[Law], all: &mut 
     });
 }
 
-/// Calls `visit` with every chunk that has some of `rows` of `recording`, and which of its own rows those are.
-fn for_chunks(
-    recording: &Recording,
-    rows: &Range<usize>,
-    mut visit: impl FnMut(&Chunk, Range<usize>),
-) -> io::Result<()> {
-    for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
-        let chunk = recording.samples.chunk(index)?;
-        let (first, n) = (chunk.first_row(), chunk.n_rows());
-        visit(&chunk, rows.start.max(first) - first..rows.end.min(first + n) - first);
-    }
-    Ok(())
-}
-
 type Columns = (Vec<f64>, Vec<f64>, Vec<f64>);
 
 /// Time, pressure and length of `rows`.
 fn rows(recording: &Recording, rows: &Range<usize>) -> io::Result<Columns> {
     let (mut time_s, mut pressure_pa, mut length_m) = (Vec::new(), Vec::new(), Vec::new());
-    for_chunks(recording, rows, |chunk, rows| {
+    recording.samples.for_rows(rows, |chunk, rows| {
         time_s.extend_from_slice(&chunk.time_s()[rows.clone()]);
         pressure_pa.extend_from_slice(&chunk.pressure_pa()[rows.clone()]);
         length_m.extend_from_slice(&chunk.length_m()[rows]);

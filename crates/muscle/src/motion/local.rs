@@ -3,7 +3,7 @@
 use std::io;
 use std::ops::Range;
 
-use pam_recording::{CHUNK_ROWS, Recording};
+use pam_recording::Recording;
 
 use super::path::{Path, Still};
 use super::{Channels, DEVIATIONS_PER_THRESHOLD, Instant};
@@ -159,10 +159,7 @@ impl Rows {
             force_n: column(samples.has_force()),
             temperature_k: column(samples.has_temperature()),
         };
-        for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
-            let chunk = samples.chunk(index)?;
-            let (first, n) = (chunk.first_row(), chunk.n_rows());
-            let range = rows.start.max(first) - first..rows.end.min(first + n) - first;
+        samples.for_rows(&rows, |chunk, range| {
             columns.time_s.extend_from_slice(&chunk.time_s()[range.clone()]);
             columns.pressure_pa.extend_from_slice(&chunk.pressure_pa()[range.clone()]);
             columns.length_m.extend_from_slice(&chunk.length_m()[range.clone()]);
@@ -172,7 +169,7 @@ impl Rows {
             if samples.has_temperature() {
                 columns.temperature_k.extend_from_slice(&chunk.temperature_k()[range]);
             }
-        }
+        })?;
         Ok(columns)
     }
 }
