@@ -21,6 +21,7 @@ use crate::discover;
 use crate::elsewhere::KeptToFitted;
 use crate::error::DiagnoseError;
 use crate::given::Given;
+use crate::held;
 use crate::held_error::Left;
 use crate::isolability::isolability;
 use crate::knocks::{self, InertialTransient};
@@ -29,6 +30,7 @@ use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::periodic;
 use crate::places::regions;
 use crate::plausible::implausible;
+use crate::pooled::Pooled;
 use crate::problem::DiagnosisProblem;
 use crate::resting_step;
 use crate::rig;
@@ -99,6 +101,8 @@ pub struct Diagnosis {
     pub sizes: Sizes,
     /// Whether, where nothing is named, what is written typically leaves more of what was fitted or held out than noise accounts for.
     pub typically_misses: bool,
+    /// Where what was fitted is followed and what was held out is not: what one model of both leaves, if that follows all.
+    pub pooled: Option<Pooled>,
     /// What the force does at one frequency while no drive does.
     pub periodic: Option<Periodic>,
     /// Base model refitted to the estimation recordings.
@@ -271,10 +275,19 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let held = Along::of(&holdout_begun, &elsewhere, direction)?;
     let fitted_traces = fitted.traces(&begun, &augmented)?;
     let held_traces = held.traces(&holdout_begun, &elsewhere)?;
-    let typically_misses = written.effects.is_empty() && {
+    let typical = {
         let (fitted, held) = ((&*begun, &*fitted_traces), (&*holdout_begun, &*held_traces));
-        Typical::of(augmented.base(), fitted, held)?.is_missed(question.limits.matters_above_n)
+        Typical::of(augmented.base(), fitted, held)?
     };
+    let matters_above_n = question.limits.matters_above_n;
+    let is_missed = written.effects.is_empty() && typical.is_missed(matters_above_n);
+    let misses_held = is_missed || held::misses_any(&fitted.evaluation, &held.evaluation);
+    let asks_held = verdict == Verdict::Consistent && misses_held && !typical.fitted_is_missed(matters_above_n);
+    let pooled = match asks_held {
+        true => Pooled::of(&estimation, &holdout, &model, &question.limits, &rig)?,
+        false => None,
+    };
+    let typically_misses = is_missed && pooled.is_none();
     let periodic = periodic::periodic(fitted_traces.par_iter().chain(&held_traces));
     let swings = periodic.is_some_and(|periodic| periodic::matters(&periodic, sizes.beyond_noise_n()));
     let verdict =
@@ -323,6 +336,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         next_experiment,
         sizes,
         typically_misses,
+        pooled,
         periodic,
         base,
         base_fitted,

@@ -4,7 +4,7 @@
 //! several times theirs under both the base and the diagnosed model differs in something that no fit has seen: an instrument,
 //! or the muscle.
 
-use pam_identification::evaluate::noise_floor_n;
+use pam_identification::evaluate::{Evaluation, noise_floor_n};
 use pam_identification::faults::reading::{self, MISSES, Reading, Wrong};
 use pam_identification::trace::{Trace, trace};
 
@@ -46,6 +46,12 @@ pub(crate) struct Held {
     pub(crate) unjudged: Vec<String>,
 }
 
+/// Whether one recording of `held` is followed worse than those of `fitted` are, by more than recordings of one muscle are.
+pub(crate) fn misses_any(fitted: &Evaluation, held: &Evaluation) -> bool {
+    let own_n = fitted.together.map_or(0.0, |together| together.rmse_n);
+    held.each.iter().any(|each| each.rmse_n > MISSES * own_n)
+}
+
 /// Judges the held-out recordings of `diagnosis`.
 ///
 /// # Errors
@@ -83,14 +89,15 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
             held.noticed.push(format!("{path}: {words}, no more than a load cell that is tared before each recording"));
             continue;
         }
-        let instrument = reading::said(&readings);
+        let is_of_one = diagnosis.pooled.as_ref().is_some_and(|pooled| pooled.held[index].rmse_n <= MISSES * own_n);
+        let instrument = if is_of_one { None } else { reading::said(&readings) };
         let all_n = left_n;
         let left_n = if instrument.is_some() { left_n } else { left_n.min(rmse_n(&within)) };
         let is_of_another =
             is_of_another(left_n, typical::left_n(std::slice::from_ref(&within)), own_n, diagnosis.worst_foretold_n);
         let reason = match instrument {
             Some(instrument) => instrument,
-            None if is_of_another && share_within >= LEAST_WITHIN => {
+            None if is_of_another && !is_of_one && share_within >= LEAST_WITHIN => {
                 "it is of another muscle, or differs in something that was not fitted".to_owned()
             }
             None => {

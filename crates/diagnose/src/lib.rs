@@ -38,6 +38,7 @@ mod own;
 mod periodic;
 mod places;
 mod plausible;
+pub mod pooled;
 pub mod problem;
 mod protocols;
 mod regions;

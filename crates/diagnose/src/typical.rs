@@ -22,14 +22,14 @@ pub(crate) const FOLLOWED_WITHIN: f64 = 2.0;
 pub(crate) struct Typical {
     /// Of what was fitted.
     fitted_n: f64,
-    /// Of what was held out, where fitted recordings have been.
+    /// Of what was held out.
     held_n: f64,
     /// What the sensors leave of either.
     sensors_n: (f64, f64),
 }
 
 impl Typical {
-    /// What `model` leaves of recordings that were fitted and of held-out ones, each with its traces.
+    /// What `model` leaves of recordings that were fitted and of held-out ones where these have been, each with its traces.
     ///
     /// # Errors
     /// [`IdentifyError`] where samples cannot be read back.
@@ -38,23 +38,44 @@ impl Typical {
         (estimation, fitted): (&[Prepared], &[Trace]),
         (holdout, held): (&[Prepared], &[Trace]),
     ) -> Result<Self, IdentifyError> {
+        let coverage = Coverage::of(fitted);
+        let within: Vec<Trace> = held.iter().map(|trace| coverage.within(trace)).collect();
+        Self::of_all(model, (estimation, fitted), (holdout, &within))
+    }
+
+    /// The same of held-out recordings wherever they have been.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub(crate) fn of_all(
+        model: &ForceModel,
+        (estimation, fitted): (&[Prepared], &[Trace]),
+        (holdout, held): (&[Prepared], &[Trace]),
+    ) -> Result<Self, IdentifyError> {
         let floor_n = |recordings: &[Prepared]| {
             if recordings.is_empty() { Ok(0.0) } else { noise_floor_n(recordings, model) }
         };
-        let coverage = Coverage::of(fitted);
-        let held: Vec<Trace> = held.iter().map(|trace| coverage.within(trace)).collect();
         Ok(Self {
             fitted_n: left_n(fitted),
-            held_n: left_n(&held),
+            held_n: left_n(held),
             sensors_n: (floor_n(estimation)?, floor_n(holdout)?),
         })
     }
 
-    /// Whether more is left than noise accounts for, and than `matters_n` beyond that, where the user said what matters.
+    /// Whether more is left of either than noise accounts for, and than `matters_n` beyond that, where the user said what matters.
     pub(crate) fn is_missed(&self, matters_n: Option<f64>) -> bool {
-        let most_n = |sensors_n: f64| matters_n.map_or(FOLLOWED_WITHIN * sensors_n, |limit_n| sensors_n.hypot(limit_n));
-        self.fitted_n > most_n(self.sensors_n.0) || self.held_n > most_n(self.sensors_n.1)
+        self.fitted_is_missed(matters_n) || self.held_n > most_n(self.sensors_n.1, matters_n)
     }
+
+    /// The same of what was fitted alone.
+    pub(crate) fn fitted_is_missed(&self, matters_n: Option<f64>) -> bool {
+        self.fitted_n > most_n(self.sensors_n.0, matters_n)
+    }
+}
+
+/// What may typically be left where the sensors leave `sensors_n`, in N.
+fn most_n(sensors_n: f64, matters_n: Option<f64>) -> f64 {
+    matters_n.map_or(FOLLOWED_WITHIN * sensors_n, |limit_n| sensors_n.hypot(limit_n))
 }
 
 /// What models typically leave of the counted samples of `traces`, in N; nothing where none counts.

@@ -39,6 +39,12 @@ impl Diagnosis {
             self.statement += &discover::statement(empirical, !self.effects.is_empty(), numbers.with_map);
         }
         self.tell_periodic();
+        if let Some(pooled) = &self.pooled
+            && let Some(held) = &agreement.holdout.together
+            && self.verdict == Verdict::Consistent
+        {
+            self.statement += &pooled.statement(held.rmse_all_n);
+        }
         let left_n = together(&agreement.estimation).rmse_all_n;
         let sensors_n = self.sizes.sensors_n;
         if self.verdict == Verdict::Explained && left_n > EXPLAINED_WITHIN * sensors_n {
