@@ -78,3 +78,45 @@ impl Pooled {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::given::tests::{RAMPS, STROKES, another, artifact, recorded};
+
+    /// What one model of fitted strokes of one muscle and ramps of another makes of the ramps; their load cell reads `gain` times the
+    /// force.
+    fn pooled(fitted: &ModelArtifact, held: &ModelArtifact, gain: f64) -> Option<Pooled> {
+        let estimation = [recorded("strokes.csv", STROKES, fitted, 1.0)];
+        let holdout = [recorded("ramps.csv", RAMPS, held, gain)];
+        Pooled::of(&estimation, &holdout, &artifact(), &Limits::of_test(3, 0.3), &[]).expect("a fit")
+    }
+
+    #[test]
+    fn recordings_of_one_muscle_are_followed_alike_whatever_the_model_was_before() {
+        let pooled = pooled(&another(), &another(), 1.0).expect("one muscle");
+        assert!(pooled.held.len() == 1 && pooled.held[0].rmse_n < 0.5, "{pooled:?}");
+    }
+
+    #[test]
+    fn recordings_of_two_muscles_or_with_two_gains_are_not() {
+        assert_eq!(pooled(&artifact(), &another(), 1.0), None);
+        assert_eq!(pooled(&artifact(), &artifact(), 1.05), None);
+    }
+
+    #[test]
+    fn the_error_that_is_said_is_over_all_samples_of_what_was_held_out() {
+        let each = |rmse_all_n, n_samples| FitStatistics {
+            rmse_n: 0.0,
+            rmse_all_n,
+            max_n: 0.0,
+            r2: 1.0,
+            fit_percent: 100.0,
+            n_samples,
+            n_unsettled: 100,
+        };
+        let said = Pooled { held: vec![each(1.0, 200), each(3.0, 0)] }.statement(9.0);
+        // Three hundred samples of 1 N and a hundred of 3 N.
+        assert!(said.contains("RMSE of 9.00 N") && said.contains("leaves 1.73 N"), "{said}");
+    }
+}

@@ -37,6 +37,10 @@ impl Diagnosis {
             empirical.holdout =
                 held.map(|(without, with)| EmpiricalGain { rmse_without_n: without.rmse_n, rmse_with_n: with.rmse_n });
             self.statement += &discover::statement(empirical, !self.effects.is_empty(), numbers.with_map);
+        } else if self.verdict == Verdict::Unexplained && self.effects.is_empty() && numbers.with_map {
+            let held = agreement.base_holdout.together.zip(agreement.holdout.together);
+            let held = held.map(|(base, written)| (base.rmse_n, written.rmse_n));
+            self.statement += &words::of_map(held, (numbers.before_n, numbers.after_n));
         }
         self.tell_periodic();
         if let Some(pooled) = &self.pooled

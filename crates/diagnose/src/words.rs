@@ -152,6 +152,21 @@ pub(crate) fn statement(
     }
 }
 
+/// What a smooth static map alone models, by what is left without it and with it of what was `held` out, or where nothing was of what
+/// was `fitted`, in N; nothing where that is no less.
+pub(crate) fn of_map(held: Option<(f64, f64)>, fitted: (f64, f64)) -> String {
+    let ((without_n, with_n), on) = match held {
+        Some(held) => (held, "held-out recordings"),
+        None => (fitted, "the fitted recordings"),
+    };
+    if with_n >= without_n {
+        return String::new();
+    }
+    format!(
+        " A smooth static map, which names nothing, models a part of it: it lowers the RMSE on {on} from {without_n:.2} to {with_n:.2} N."
+    )
+}
+
 /// `statement` after what is to be said first: that the model as given misses the recordings, or the diagnosed one what was held
 /// out. Where an instrument would explain what the given model misses as well as what was named does, both are said.
 pub(crate) fn with_given(given: &Given, statement: &str) -> String {
@@ -238,5 +253,11 @@ mod tests {
         let beside = Numbers { with_map: true, n_terms: 2, ..numbers(1.5) };
         assert!(beside.gain(&[]).starts_with("with that, a smooth static map and empirical terms the RMSE falls"));
         assert_eq!(beside.share_unexplained(&[]), 1.0);
+    }
+    #[test]
+    fn a_map_is_said_to_model_a_part_where_it_lowers_the_error_of_what_was_held_out_or_else_of_what_was_fitted() {
+        assert!(of_map(Some((3.0, 1.5)), (2.0, 1.0)).ends_with("the RMSE on held-out recordings from 3.00 to 1.50 N."));
+        assert!(of_map(None, (2.0, 1.0)).ends_with("the RMSE on the fitted recordings from 2.00 to 1.00 N."));
+        assert_eq!(of_map(Some((3.0, 3.1)), (2.0, 1.0)), "");
     }
 }

@@ -1,10 +1,11 @@
 use super::*;
 
-use pam_artifact::ModelArtifact;
+use pam_artifact::model::FitStatistics;
 use pam_identification::prepare::Prepared;
 
 use crate::coverage::tests::trace_of;
-use crate::given::tests::{STROKES, artifact, diagnosed, recorded};
+use crate::given::tests::{STROKES, another, artifact, diagnosed, recorded};
+use crate::pooled::Pooled;
 
 /// The same strokes, begun a little later.
 fn later(time_s: f64) -> (f64, f64) {
@@ -22,19 +23,6 @@ fn held(holdout: Vec<Prepared>) -> Held {
     let found = diagnosed(holdout);
     let agreement = Agreement::of(&found).expect("agreement");
     judge(&found, &agreement).expect("a judgment")
-}
-
-/// The model with half of the friction and less of a gas force that narrows sooner: another muscle.
-fn another() -> ModelArtifact {
-    let mut model = artifact();
-    for entry in &mut model.parameters {
-        match entry.name.as_str() {
-            "k2" => entry.value *= 1.12,
-            "c10" | "c01" => entry.value *= 1.8,
-            _ => (),
-        }
-    }
-    model
 }
 
 #[test]
@@ -88,4 +76,26 @@ fn a_hold_out_far_from_every_fitted_recording_says_nothing_of_the_muscle() {
     let held = held(vec![recorded("high.csv", high, &another(), 1.0)]);
     assert!(held.noticed.iter().any(|said| said.starts_with("high.csv is at pressures and lengths")), "{held:?}");
     assert!(held.missed.iter().all(|said| !said.contains("another muscle")), "{held:?}");
+}
+
+#[test]
+fn a_hold_out_that_one_model_follows_with_the_others_is_of_no_other_muscle() {
+    let mut found = diagnosed(vec![recorded("other.csv", STROKES, &another(), 1.0)]);
+    let agreement = Agreement::of(&found).expect("agreement");
+    let mut is_missed = |pooled_n: f64| {
+        let held = agreement.holdout.each.iter().map(|each| FitStatistics { rmse_n: pooled_n, ..*each }).collect();
+        found.pooled = Some(Pooled { held });
+        !judge(&found, &agreement).expect("a judgment").missed.is_empty()
+    };
+    assert!(!is_missed(0.3) && is_missed(3.0));
+}
+
+#[test]
+fn one_recording_that_is_followed_worse_than_the_fitted_ones_is_seen_among_others() {
+    let found = diagnosed(vec![recorded("later.csv", later, &artifact(), 1.0)]);
+    let agreement = Agreement::of(&found).expect("agreement");
+    let (fitted, mut held) = (&agreement.estimation, agreement.holdout.clone());
+    assert!(!misses_any(fitted, &held));
+    held.each.push(FitStatistics { rmse_n: 2.0 * fitted.together.expect("samples").rmse_n, ..held.each[0] });
+    assert!(misses_any(fitted, &held));
 }

@@ -8,6 +8,7 @@ use pam_artifact::model::FitStatistics;
 use crate::elsewhere::KeptToFitted;
 use crate::given::tests::{STROKES, artifact, diagnosed, recorded};
 use crate::joint::HeldOut;
+use crate::pooled::Pooled;
 
 /// The same strokes, begun a little later.
 fn later(time_s: f64) -> (f64, f64) {
@@ -202,4 +203,17 @@ fn a_static_map_is_seen_among_what_is_written() {
         found.entries.push(lag);
     });
     assert!(!with_another.has_map());
+}
+
+#[test]
+fn what_parameters_alone_leave_open_is_said_where_nothing_is_missing() {
+    let said = |verdict| {
+        let weighed = weighed(|found, agreement| {
+            found.verdict = verdict;
+            found.pooled = Some(Pooled { held: agreement.holdout.each.clone() });
+            found.typically_misses = verdict == Verdict::Unexplained;
+        });
+        weighed.statement.contains("leave parameters open")
+    };
+    assert!(said(Verdict::Consistent) && !said(Verdict::Unexplained));
 }
