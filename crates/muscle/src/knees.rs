@@ -5,6 +5,7 @@
 //! whether two straight lines that meet describe it down to the noise of the sensor. If they do, the path is taken as smooth
 //! but for that knee: rates come from what is left of the path without its knees, which lend their own.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use crate::smoothing::{Sliding, Window};
@@ -53,7 +54,7 @@ impl Knees {
             }
             all.extend(found.bent.iter().map(|bent| bent.knee));
         }
-        all.sort_by(|left, right| left.at.total_cmp(&right.at));
+        all.sort_by(ascending);
         Self::new(all, windows[0].period_s)
     }
 
@@ -105,6 +106,10 @@ impl Knees {
     }
 }
 
+fn ascending(left: &Knee, right: &Knee) -> Ordering {
+    left.at.total_cmp(&right.at)
+}
+
 /// Knees of `path`, ascending.
 fn found(path: &[f64], window: &Window, noise: f64) -> Vec<Knee> {
     let half = window.half;
@@ -137,6 +142,8 @@ fn found(path: &[f64], window: &Window, noise: f64) -> Vec<Knee> {
         }
         row += 1;
     }
+    // Of two bends that overlap the second may have the earlier corner.
+    knees.sort_by(ascending);
     knees
 }
 
@@ -231,5 +238,36 @@ mod tests {
         for (knees, _) in [noisy(|t| 0.005 * (12.0 * t).sin()), noisy(|_| 0.0), noisy(|t| 0.03 * (t - 2.5).powi(2))] {
             assert!(knees.bent.is_empty());
         }
+    }
+    /// A hand that jerks: straight lines of some rows each, whose slopes are drawn.
+    fn jerks(seed: u64) -> Vec<f64> {
+        let mut generator = rand_pcg::Pcg64::seed_from_u64(seed);
+        let mut draw = || Normal::new(0.0, 1.0).unwrap().sample(&mut generator);
+        let (mut place_m, mut step_m) = (0.0, 0.0);
+        let row = |row: usize| {
+            if row.is_multiple_of(5) {
+                step_m = 2.0 * NOISE_M * draw();
+            }
+            place_m += step_m;
+            place_m + NOISE_M * draw()
+        };
+        (0..1000).map(row).collect()
+    }
+
+    #[test]
+    fn what_is_left_of_a_path_and_what_its_knees_add_are_the_path() {
+        let time_s: Vec<f64> = (0..1000).map(|row| f64::from(row) * PERIOD_S).collect();
+        let windows = [HALF_WINDOW_S, HALF_VALUE_WINDOW_S].map(|half_s| Window::over(&time_s, half_s));
+        let mut n_knees = 0;
+        for seed in 0..30 {
+            let path = jerks(seed);
+            let mut left = path.clone();
+            let knees = Knees::take_from(&mut left, [&windows[0], &windows[1]], NOISE_M);
+            n_knees += knees.bent.len();
+            for (row, (left, whole)) in left.iter().zip(&path).enumerate() {
+                assert!((left + knees.added(row) - whole).abs() < 1e-9, "seed {seed}, row {row}");
+            }
+        }
+        assert!(n_knees > 100, "{n_knees}");
     }
 }
