@@ -284,7 +284,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let misses_held = is_missed || held::misses_any(&fitted.evaluation, &held.evaluation);
     let asks_held = verdict == Verdict::Consistent && misses_held && !typical.fitted_is_missed(matters_above_n);
     let pooled = match asks_held {
-        true => Pooled::of(&estimation, &holdout, &model, &question.limits, &rig)?,
+        true => Pooled::of(&estimation, &holdout, &model, &question.limits, &rig, &typical)?,
         false => None,
     };
     let typically_misses = is_missed && pooled.is_none();

@@ -44,6 +44,8 @@ pub(crate) struct Held {
     pub(crate) noticed: Vec<String>,
     /// What the model misses of such a recording there, which judges the extrapolation alone, in words.
     pub(crate) unjudged: Vec<String>,
+    /// Each recording that would be missed if one model of all did not follow it, in words.
+    pub(crate) followed: Vec<String>,
 }
 
 /// Whether one recording of `held` is followed worse than those of `fitted` are, by more than recordings of one muscle are.
@@ -89,15 +91,14 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
             held.noticed.push(format!("{path}: {words}, no more than a load cell that is tared before each recording"));
             continue;
         }
-        let is_of_one = diagnosis.pooled.as_ref().is_some_and(|pooled| pooled.held[index].rmse_n <= MISSES * own_n);
-        let instrument = if is_of_one { None } else { reading::said(&readings) };
+        let instrument = reading::said(&readings);
         let all_n = left_n;
         let left_n = if instrument.is_some() { left_n } else { left_n.min(rmse_n(&within)) };
         let is_of_another =
             is_of_another(left_n, typical::left_n(std::slice::from_ref(&within)), own_n, diagnosis.worst_foretold_n);
         let reason = match instrument {
             Some(instrument) => instrument,
-            None if is_of_another && !is_of_one && share_within >= LEAST_WITHIN => {
+            None if is_of_another && share_within >= LEAST_WITHIN => {
                 "it is of another muscle, or differs in something that was not fitted".to_owned()
             }
             None => {
@@ -107,6 +108,13 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
                 continue;
             }
         };
+        let pooled_n = diagnosis.pooled.as_ref().map(|pooled| pooled.held[index].rmse_n);
+        if let Some(pooled_n) = pooled_n.filter(|pooled_n| *pooled_n <= MISSES * own_n) {
+            held.followed.push(format!(
+                "{path} is missed by {all_n:.2} N, and by one model of all recordings by {pooled_n:.2} N"
+            ));
+            continue;
+        }
         held.missed.push(format!(
             "{path} is missed by {left_n:.2} N, where {own_n:.2} N are left of what was fitted: {reason}"
         ));

@@ -26,11 +26,14 @@ use crate::verdict::{Sizes, verdict};
 pub struct Pooled {
     /// What one model of all of them leaves of each that was held out.
     pub held: Vec<FitStatistics>,
+    /// Where a model of the fitted ones alone typically misses the others: by how much, what noise leaves of these, and what one model
+    /// of all leaves, in N.
+    pub typically_n: Option<[f64; 3]>,
 }
 
 impl Pooled {
     /// Of `estimation` and `holdout` where eq. 11 with `rig`, with other values of what was free in `model`, follows both as what lacks
-    /// nothing follows recordings that it was fitted to; none where it does not.
+    /// nothing follows recordings that it was fitted to; none where it does not. A model of `estimation` alone leaves what `alone` says.
     ///
     /// # Errors
     /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit; where they cannot be read back.
@@ -40,11 +43,12 @@ impl Pooled {
         model: &ModelArtifact,
         limits: &Limits,
         rig: &[Term],
+        alone: &Typical,
     ) -> Result<Option<Self>, DiagnoseError> {
         let recordings: Vec<Prepared> = estimation.iter().chain(holdout).cloned().collect();
         let sensor_floor_n = noise_floor_n(&recordings, &model.force_model())?;
-        let limits = Limits { max_effects: 0, sensor_floor_n, ..limits.clone() };
-        let question = DiagnosisProblem::new(&recordings, model, limits);
+        let search = Limits { max_effects: 0, sensor_floor_n, ..limits.clone() };
+        let question = DiagnosisProblem::new(&recordings, model, search);
         let track = question.without_mistaken(&rig::track(&recordings, model, rig)?);
         let found = question.search_without(&track, &[])?;
         if verdict(&found, &Sizes::of(&found, &question.limits), false) != Verdict::Consistent {
@@ -62,19 +66,31 @@ impl Pooled {
         let traces = along.traces(&begun, &written)?;
         let (begun, traces) = (begun.split_at(estimation.len()), traces.split_at(estimation.len()));
         let typical = Typical::of_all(written.base(), (begun.0, traces.0), (begun.1, traces.1))?;
-        let follows = !typical.is_missed(question.limits.matters_above_n);
-        Ok(follows.then(|| Self { held: along.evaluation.each[estimation.len()..].to_vec() }))
+        if typical.is_missed(limits.matters_above_n) {
+            return Ok(None);
+        }
+        let held = along.evaluation.each[estimation.len()..].to_vec();
+        let is_missed = alone.held_is_missed(limits.matters_above_n);
+        Ok(Some(Self { held, typically_n: is_missed.then(|| [alone.held_n, alone.sensors_n.1, typical.held_n]) }))
     }
 
-    /// What a person should know of it where a model of the fitted recordings alone leaves `left_n` of the others, over all samples, in N.
-    pub(crate) fn statement(&self, left_n: f64) -> String {
-        let n = |each: &FitStatistics| (each.n_samples + each.n_unsettled) as f64;
-        let squares: f64 = self.held.iter().map(|each| n(each) * each.rmse_all_n.powi(2)).sum();
-        let pooled_n = (squares / self.held.iter().map(n).sum::<f64>()).sqrt();
+    /// What a person should know of it, where each of `followed` is said to be missed by the model of the fitted recordings alone, and not
+    /// by this one; empty where that misses nothing.
+    pub(crate) fn statement(&self, followed: &[String]) -> String {
+        let typically = self.typically_n.map(|[alone_n, noise_n, together_n]| {
+            format!(
+                "held-out recordings are typically missed by {alone_n:.2} N, where noise leaves {noise_n:.2} N, and by one model of \
+                 these and the fitted ones by {together_n:.2} N"
+            )
+        });
+        let missed: Vec<&str> = typically.iter().chain(followed).map(String::as_str).collect();
+        if missed.is_empty() {
+            return String::new();
+        }
         format!(
-            " Held-out recordings are foretold with an RMSE of {left_n:.2} N over all samples; one model of these and the fitted ones \
-             leaves {pooled_n:.2} N of them. So no physics has to be missing: the fitted recordings leave parameters open. Identify \
-             the model from recordings that go where it is to be used."
+            " Yet {}: no physics has to be missing, the fitted recordings leave parameters open. Identify the model from recordings \
+             that go where it is to be used.",
+            missed.join("; ")
         )
     }
 }
@@ -89,13 +105,19 @@ mod tests {
     fn pooled(fitted: &ModelArtifact, held: &ModelArtifact, gain: f64) -> Option<Pooled> {
         let estimation = [recorded("strokes.csv", STROKES, fitted, 1.0)];
         let holdout = [recorded("ramps.csv", RAMPS, held, gain)];
-        Pooled::of(&estimation, &holdout, &artifact(), &Limits::of_test(3, 0.3), &[]).expect("a fit")
+        let alone = Typical { fitted_n: 0.3, held_n: 2.0, sensors_n: (0.3, 0.3) };
+        Pooled::of(&estimation, &holdout, &artifact(), &Limits::of_test(3, 0.3), &[], &alone).expect("a fit")
     }
 
     #[test]
     fn recordings_of_one_muscle_are_followed_alike_whatever_the_model_was_before() {
         let pooled = pooled(&another(), &another(), 1.0).expect("one muscle");
         assert!(pooled.held.len() == 1 && pooled.held[0].rmse_n < 0.5, "{pooled:?}");
+        assert!(
+            pooled
+                .typically_n
+                .is_some_and(|[alone_n, noise_n, together_n]| { (alone_n, noise_n) == (2.0, 0.3) && together_n < 0.5 })
+        );
     }
 
     #[test]
@@ -105,18 +127,14 @@ mod tests {
     }
 
     #[test]
-    fn the_error_that_is_said_is_over_all_samples_of_what_was_held_out() {
-        let each = |rmse_all_n, n_samples| FitStatistics {
-            rmse_n: 0.0,
-            rmse_all_n,
-            max_n: 0.0,
-            r2: 1.0,
-            fit_percent: 100.0,
-            n_samples,
-            n_unsettled: 100,
-        };
-        let said = Pooled { held: vec![each(1.0, 200), each(3.0, 0)] }.statement(9.0);
-        // Three hundred samples of 1 N and a hundred of 3 N.
-        assert!(said.contains("RMSE of 9.00 N") && said.contains("leaves 1.73 N"), "{said}");
+    fn what_is_typically_missed_and_what_is_followed_with_the_others_are_said_and_nothing_else() {
+        let said = |typically_n, followed: &[String]| Pooled { held: Vec::new(), typically_n }.statement(followed);
+        assert_eq!(said(None, &[]), "");
+        let typically = said(Some([3.0, 1.0, 1.5]), &[]);
+        assert!(
+            typically.contains("missed by 3.00 N, where noise leaves 1.00 N") && typically.contains("by 1.50 N: no")
+        );
+        let both = said(Some([3.0, 1.0, 1.5]), &["h.csv is missed by 9.00 N".to_owned()]);
+        assert!(both.contains("ones by 1.50 N; h.csv is missed by 9.00 N: no physics"), "{both}");
     }
 }

@@ -21,11 +21,11 @@ pub(crate) const FOLLOWED_WITHIN: f64 = 2.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Typical {
     /// Of what was fitted.
-    fitted_n: f64,
+    pub(crate) fitted_n: f64,
     /// Of what was held out.
-    held_n: f64,
+    pub(crate) held_n: f64,
     /// What the sensors leave of either.
-    sensors_n: (f64, f64),
+    pub(crate) sensors_n: (f64, f64),
 }
 
 impl Typical {
@@ -64,7 +64,12 @@ impl Typical {
 
     /// Whether more is left of either than noise accounts for, and than `matters_n` beyond that, where the user said what matters.
     pub(crate) fn is_missed(&self, matters_n: Option<f64>) -> bool {
-        self.fitted_is_missed(matters_n) || self.held_n > most_n(self.sensors_n.1, matters_n)
+        self.fitted_is_missed(matters_n) || self.held_is_missed(matters_n)
+    }
+
+    /// The same of what was held out alone.
+    pub(crate) fn held_is_missed(&self, matters_n: Option<f64>) -> bool {
+        self.held_n > most_n(self.sensors_n.1, matters_n)
     }
 
     /// The same of what was fitted alone.

@@ -43,12 +43,6 @@ impl Diagnosis {
             self.statement += &words::of_map(held, (numbers.before_n, numbers.after_n));
         }
         self.tell_periodic();
-        if let Some(pooled) = &self.pooled
-            && let Some(held) = &agreement.holdout.together
-            && self.verdict == Verdict::Consistent
-        {
-            self.statement += &pooled.statement(held.rmse_all_n);
-        }
         let left_n = together(&agreement.estimation).rmse_all_n;
         let sensors_n = self.sizes.sensors_n;
         if self.verdict == Verdict::Explained && left_n > EXPLAINED_WITHIN * sensors_n {
@@ -76,7 +70,7 @@ impl Diagnosis {
                  The finding rests on the fitted recordings alone."
             ));
         }
-        let held::Held { missed, noticed, unjudged } = held::judge(self, agreement)?;
+        let held::Held { missed, noticed, unjudged, followed } = held::judge(self, agreement)?;
         self.given.holdout_missed = missed;
         self.noticed.extend(noticed);
         if self.given.misses || !self.given.holdout_missed.is_empty() {
@@ -84,6 +78,11 @@ impl Diagnosis {
                 Verdict::Consistent | Verdict::Unexplained => Verdict::Unexplained,
                 Verdict::Explained | Verdict::ExplainedInPart | Verdict::Ambiguous => Verdict::ExplainedInPart,
             };
+        }
+        if let Some(pooled) = &self.pooled
+            && self.verdict == Verdict::Consistent
+        {
+            self.statement += &pooled.statement(&followed);
         }
         self.statement = words::with_given(&self.given, &self.statement);
         if !unjudged.is_empty() {

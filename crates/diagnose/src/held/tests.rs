@@ -84,8 +84,10 @@ fn a_hold_out_that_one_model_follows_with_the_others_is_of_no_other_muscle() {
     let agreement = Agreement::of(&found).expect("agreement");
     let mut is_missed = |pooled_n: f64| {
         let held = agreement.holdout.each.iter().map(|each| FitStatistics { rmse_n: pooled_n, ..*each }).collect();
-        found.pooled = Some(Pooled { held });
-        !judge(&found, &agreement).expect("a judgment").missed.is_empty()
+        found.pooled = Some(Pooled { held, typically_n: None });
+        let Held { missed, followed, .. } = judge(&found, &agreement).expect("a judgment");
+        assert_eq!(missed.len() + followed.len(), 1);
+        !missed.is_empty()
     };
     assert!(!is_missed(0.3) && is_missed(3.0));
 }

@@ -210,7 +210,8 @@ fn what_parameters_alone_leave_open_is_said_where_nothing_is_missing() {
     let said = |verdict| {
         let weighed = weighed(|found, agreement| {
             found.verdict = verdict;
-            found.pooled = Some(Pooled { held: agreement.holdout.each.clone() });
+            let held = agreement.holdout.each.clone();
+            found.pooled = Some(Pooled { held, typically_n: Some([2.0, 0.5, 0.6]) });
             found.typically_misses = verdict == Verdict::Unexplained;
         });
         weighed.statement.contains("leave parameters open")
