@@ -71,7 +71,7 @@ impl Pooled {
         }
         let held = along.evaluation.each[estimation.len()..].to_vec();
         let is_missed = alone.held_is_missed(limits.matters_above_n);
-        Ok(Some(Self { held, typically_n: is_missed.then(|| [alone.held_n, alone.sensors_n.1, typical.held_n]) }))
+        Ok(Some(Self { held, typically_n: is_missed.then_some([alone.held_n, alone.sensors_n.1, typical.held_n]) }))
     }
 
     /// What a person should know of it, where each of `followed` is said to be missed by the model of the fitted recordings alone, and not
