@@ -25,7 +25,7 @@ use beside::kept_map;
 pub(crate) use beside::{Beside, fitting};
 use forward::{ForwardSelection, Selected};
 use look::{FORM_AT_MOST, Look, form_square};
-use settle::{at_rest, polished, without};
+use settle::{at_rest, polished, unless_suspected, without};
 pub use worth::chance;
 
 /// Limits of a search.
@@ -228,6 +228,7 @@ pub fn search(
         best = stand_ins::without(mapped, best, &features, mismatch, limits.confirmed);
     }
     let best = at_rest(mapped, polished(mapped, best)?)?;
+    let best = unless_suspected(mapped, best, &seen, &promising);
     let mut taken = Vec::new();
     for index in 0..best.state.guesses.len() {
         let of_the_map = parsimonious.contains(&best.state.guesses[index].id());

@@ -4,9 +4,11 @@ use pam_muscle::effects::{Kind, Seen};
 
 use super::{Judged, judged};
 use crate::hypothesis::CandidateEffect;
+use crate::joint::HeldOut;
 use crate::state::{Setting, State};
 use crate::trial::{self, Shapes, Trial};
 use crate::uncertainty::correlated_instants;
+use crate::verdict::RIVAL;
 
 /// Takes a trial: joint fit, shapes of everything refined once more.
 pub(super) fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Option<Judged> {
@@ -170,6 +172,44 @@ pub(super) fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, prom
     best
 }
 
+/// Evidence by which a fault of an instrument must exceed that of what the catalogue says it is confused with and no instrument is at
+/// fault for, odds of seven to one: tube, rubber and braid are there in every rig. Of 38 named faults with such a rival that were looked
+/// at 27 were right: one of these had 1.2 more evidence than its rival, all others 2.3 to 19; of the eleven wrong ones nine had 1.8 at most.
+const SUSPECTED: f64 = 2.0;
+
+/// `best` with what no instrument is at fault for in place of each fault of an instrument that hardly more speaks for.
+pub(super) fn unless_suspected(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &Shapes) -> Judged {
+    let (mut best, mut index) = (best, 0);
+    while index < best.state.guesses.len() {
+        match likelier(setting, &best, index, seen, promising) {
+            // It stands behind those that are still to be looked at.
+            Some(next) => best = next,
+            None => index += 1,
+        }
+    }
+    best
+}
+
+/// `best` with what is as likely in place of effect `index`, if that is a fault of an instrument.
+fn likelier(setting: &Setting<'_>, best: &Judged, index: usize, seen: &Seen, promising: &Shapes) -> Option<Judged> {
+    let fault = best.state.guesses[index].effect;
+    if fault.kind() != Kind::Instrument {
+        return None;
+    }
+    let (rest, rivals) = without(setting, best, index, seen, promising)?;
+    let gain = |with: &HeldOut| rest.held_out.mean_square() - with.mean_square();
+    let own = (rest.held_out.log_ratio(&best.held_out), gain(&best.held_out));
+    let is_as_likely = |with: &HeldOut, log_ratio: f64| log_ratio > own.0 - SUSPECTED && gain(with) > RIVAL * own.1;
+    let is_confused = |id: &str| fault.page().confused_with.iter().any(|confusion| confusion.id == id);
+    let other = rivals.iter().find(|rival| {
+        rival.guess.effect.kind() != Kind::Instrument
+            && is_confused(rival.guess.id())
+            && is_as_likely(&rival.held_out, rival.log_ratio)
+    })?;
+    let next = at_rest(setting, polished(setting, settle(setting, &rest, other)?)?)?;
+    is_as_likely(&next.held_out, rest.held_out.log_ratio(&next.held_out)).then_some(next)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -209,6 +249,23 @@ mod tests {
         };
         assert_eq!(after("channel-delay", &[0.12, 0.0]), ["pressure-lag"]);
         assert_eq!(after("pressure-lag", &[0.15, 0.0]), ["pressure-lag"]);
+    }
+
+    #[test]
+    fn a_fault_of_an_instrument_gives_way_to_what_is_as_likely_without_one_and_stays_where_far_more_speaks_for_it() {
+        let after = |truth: &'static str, shape_s: f64, own_s: f64| {
+            let mut given = Given::of(&["isometric-ramps"], &[(truth, &[shape_s, 0.0], &[])]);
+            given.disturb();
+            let (setting, seen) = (given.setting(), Seen::of(given.track.instants.iter()));
+            let promising = Shapes::from([("pressure-lag", vec![-own_s, 0.0]), ("channel-delay", vec![own_s, 0.0])]);
+            let best = of(&given, "channel-delay", &[own_s, 0.0]);
+            let left = unless_suspected(&setting, best, &seen, &promising);
+            left.state.guesses.iter().map(CandidateEffect::id).collect::<Vec<_>>()
+        };
+        // In 3 ms a lag and a delay are the same.
+        assert_eq!(after("channel-delay", -0.003, -0.003), ["pressure-lag"]);
+        assert_eq!(after("pressure-lag", 0.003, -0.003), ["pressure-lag"]);
+        assert_eq!(after("channel-delay", -0.15, -0.15), ["channel-delay"]);
     }
 
     #[test]
