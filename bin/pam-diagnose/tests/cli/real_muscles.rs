@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use pam_artifact::ModelArtifact;
+use pam_artifact::diagnosis::DiagnosisArtifact;
 use pam_identification::fit::FitOptions;
 use pam_muscle::MuscleFile;
 use pam_recording::{ReadOptions, read_recording};
@@ -34,7 +35,8 @@ fn files(cut: &str, repeat: u32) -> Vec<PathBuf> {
     folders.map(of_folder).find(|files| !files.is_empty()).unwrap_or_default()
 }
 
-/// Fitted to one run at each length, the augmented model foretells another one to within `most_n`, root mean square over all samples.
+/// Fitted to one run at each length, the augmented model foretells another one to within `most_n`, root mean square over all samples;
+/// what is named is the same for both muscles, of one make and on one rig.
 fn is_foretold_within(cut: &str, most_n: f64) {
     let (fitted, held) = (files(cut, 9), files(cut, 10));
     if fitted.is_empty() {
@@ -55,6 +57,10 @@ fn is_foretold_within(cut: &str, most_n: f64) {
     let held_n = augmented.fit.validation.unwrap().rmse_all_n;
     println!("{cut}: {held_n:.2} N");
     assert!(held_n <= most_n, "{held_n}");
+    let (diagnosis, _) = DiagnosisArtifact::read(&desk.path("diagnosis.json")).unwrap();
+    let names: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.id.as_str()).collect();
+    assert_eq!(names, ["slack", "pressure-lag"]);
+    assert_eq!(diagnosis.effects[1].alternatives, ["channel-delay"]);
 }
 
 #[test]
