@@ -283,10 +283,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let is_missed = written.effects.is_empty() && typical.is_missed(matters_above_n);
     let misses_held = is_missed || held::misses_any(&fitted.evaluation, &held.evaluation);
     let asks_held = verdict == Verdict::Consistent && misses_held && !typical.fitted_is_missed(matters_above_n);
-    let pooled = match asks_held {
-        true => Pooled::of(&estimation, &holdout, &model, &question.limits, &rig, &typical)?,
-        false => None,
-    };
+    let pooled =
+        asks_held.then(|| Pooled::of(&estimation, &holdout, &model, &question.limits, &rig, &typical)).flatten();
     let typically_misses = is_missed && pooled.is_none();
     let periodic = periodic::periodic(fitted_traces.par_iter().chain(&held_traces));
     let swings = periodic.is_some_and(|periodic| periodic::matters(&periodic, sizes.beyond_noise_n()));

@@ -14,7 +14,6 @@ use pam_identification::prepare::Prepared;
 use pam_muscle::effects::Term;
 
 use crate::carried;
-use crate::error::DiagnoseError;
 use crate::problem::DiagnosisProblem;
 use crate::rig;
 use crate::search::Limits;
@@ -33,10 +32,8 @@ pub struct Pooled {
 
 impl Pooled {
     /// Of `estimation` and `holdout` where eq. 11 with `rig`, with other values of what was free in `model`, follows both as what lacks
-    /// nothing follows recordings that it was fitted to; none where it does not. A model of `estimation` alone leaves what `alone` says.
-    ///
-    /// # Errors
-    /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit; where they cannot be read back.
+    /// nothing follows recordings that it was fitted to; none where it does not, or has no force for one of their samples. A model of
+    /// `estimation` alone leaves what `alone` says.
     pub(crate) fn of(
         estimation: &[Prepared],
         holdout: &[Prepared],
@@ -44,15 +41,15 @@ impl Pooled {
         limits: &Limits,
         rig: &[Term],
         alone: &Typical,
-    ) -> Result<Option<Self>, DiagnoseError> {
+    ) -> Option<Self> {
         let recordings: Vec<Prepared> = estimation.iter().chain(holdout).cloned().collect();
-        let sensor_floor_n = noise_floor_n(&recordings, &model.force_model())?;
+        let sensor_floor_n = noise_floor_n(&recordings, &model.force_model()).ok()?;
         let search = Limits { max_effects: 0, sensor_floor_n, ..limits.clone() };
         let question = DiagnosisProblem::new(&recordings, model, search);
-        let track = question.without_mistaken(&rig::track(&recordings, model, rig)?);
-        let found = question.search_without(&track, &[])?;
+        let track = question.without_mistaken(&rig::track(&recordings, model, rig).ok()?);
+        let found = question.search_without(&track, &[]).ok()?;
         if verdict(&found, &Sizes::of(&found, &question.limits), false) != Verdict::Consistent {
-            return Ok(None);
+            return None;
         }
         let setting = question.setting(&track, &found.nuisance);
         let (state, nuisance) = carried::leaves_least(&setting, &found, None)
@@ -60,18 +57,18 @@ impl Pooled {
         let written = rig::beside(rig, &carried::carried(&setting, &found, &state, &nuisance));
         let mut begun = recordings.clone();
         for (index, prepared) in begun.iter_mut().enumerate() {
-            prepared.begin_with(&written, model.direction, index)?;
+            prepared.begin_with(&written, model.direction, index).ok()?;
         }
-        let along = Along::of(&begun, &written, model.direction)?;
-        let traces = along.traces(&begun, &written)?;
+        let along = Along::of(&begun, &written, model.direction).ok()?;
+        let traces = along.traces(&begun, &written).ok()?;
         let (begun, traces) = (begun.split_at(estimation.len()), traces.split_at(estimation.len()));
-        let typical = Typical::of_all(written.base(), (begun.0, traces.0), (begun.1, traces.1))?;
+        let typical = Typical::of_all(written.base(), (begun.0, traces.0), (begun.1, traces.1)).ok()?;
         if typical.is_missed(limits.matters_above_n) {
-            return Ok(None);
+            return None;
         }
         let held = along.evaluation.each[estimation.len()..].to_vec();
         let is_missed = alone.held_is_missed(limits.matters_above_n);
-        Ok(Some(Self { held, typically_n: is_missed.then_some([alone.held_n, alone.sensors_n.1, typical.held_n]) }))
+        Some(Self { held, typically_n: is_missed.then_some([alone.held_n, alone.sensors_n.1, typical.held_n]) })
     }
 
     /// What a person should know of it, where each of `followed` is said to be missed by the model of the fitted recordings alone, and not
@@ -106,7 +103,7 @@ mod tests {
         let estimation = [recorded("strokes.csv", STROKES, fitted, 1.0)];
         let holdout = [recorded("ramps.csv", RAMPS, held, gain)];
         let alone = Typical { fitted_n: 0.3, held_n: 2.0, sensors_n: (0.3, 0.3) };
-        Pooled::of(&estimation, &holdout, &artifact(), &Limits::of_test(3, 0.3), &[], &alone).expect("a fit")
+        Pooled::of(&estimation, &holdout, &artifact(), &Limits::of_test(3, 0.3), &[], &alone)
     }
 
     #[test]
