@@ -22,7 +22,7 @@ const MOST: f64 = 4.0;
 /// Times what is left of the fitted recordings beyond which a held-out one is missed however little of it is: one of steps that is late is
 /// missed as they are made alone. Of the hold-outs of 114 healthy muscles, together, 5.9 times at most were left but of one, which left 45
 /// times and is none of another muscle where fitted recordings have been.
-const FAR: f64 = 10.0;
+pub(crate) const FAR: f64 = 10.0;
 
 /// Times the worst error with which one of the fitted recordings is foretold by the others: so much is foretold of any recording.
 const AS_OTHERS: f64 = 2.0;

@@ -114,7 +114,7 @@ impl Diagnosis {
 
     /// Whether recordings that nothing was fitted to are followed so well, over all samples, that what is left of the fitted ones
     /// without a name, and without a term that models it, does not matter. A smooth static map belongs to any muscle's model, as far
-    /// as the form of eq. 11 accounts for it.
+    /// as the form of eq. 11 accounts for it. What matters is every recording that is missed by far: hold-outs do not show what is wrong with it.
     fn is_followed(&self, agreement: &Agreement) -> bool {
         let as_written = self.sizes.static_n.is_none().then_some(&agreement.holdout);
         let held = as_written.unwrap_or(&agreement.base_holdout).together.as_ref();
@@ -124,6 +124,7 @@ impl Diagnosis {
             && self.effects.is_empty()
             && self.empirical.is_none()
             && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)
+            && agreement.estimation.each.iter().all(|fitted| fitted.rmse_n <= held::FAR * agreement.noise_floor_n)
     }
 
     /// What the base model alone and what is written leave of what was held out, over all samples, in N, where something is named and

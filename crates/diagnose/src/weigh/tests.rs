@@ -78,6 +78,19 @@ fn hold_outs_that_the_base_follows_make_what_is_unexplained_consistent() {
 }
 
 #[test]
+fn a_fitted_recording_that_is_missed_by_far_matters_however_well_hold_outs_are_followed() {
+    let one_leaves = |times: f64| {
+        let found = weighed(|found, agreement| {
+            found.verdict = Verdict::Unexplained;
+            base_leaves(agreement, 1.0);
+            agreement.estimation.each[1].rmse_n = times * agreement.noise_floor_n;
+        });
+        found.verdict
+    };
+    assert_eq!((one_leaves(9.9), one_leaves(10.1)), (Verdict::Consistent, Verdict::Unexplained));
+}
+
+#[test]
 fn what_is_typically_missed_stays_unexplained_whatever_hold_outs_say() {
     let found = weighed(|found, agreement| {
         (found.verdict, found.typically_misses) = (Verdict::Unexplained, true);
