@@ -275,16 +275,19 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let held = Along::of(&holdout_begun, &elsewhere, direction)?;
     let fitted_traces = fitted.traces(&begun, &augmented)?;
     let held_traces = held.traces(&holdout_begun, &elsewhere)?;
-    let typical = {
+    let typical = || {
         let (fitted, held) = ((&*begun, &*fitted_traces), (&*holdout_begun, &*held_traces));
-        Typical::of(augmented.base(), fitted, held)?
+        Typical::of(augmented.base(), fitted, held)
     };
+    let typical = written.effects.is_empty().then(typical).transpose()?;
     let matters_above_n = question.limits.matters_above_n;
-    let is_missed = written.effects.is_empty() && typical.is_missed(matters_above_n);
-    let misses_held = is_missed || held::misses_any(&fitted.evaluation, &held.evaluation);
-    let asks_held = verdict == Verdict::Consistent && misses_held && !typical.fitted_is_missed(matters_above_n);
+    let is_missed = typical.is_some_and(|typical| typical.is_missed(matters_above_n));
+    // Where hold-outs alone speak against a model that nothing is missing in.
+    let in_question = typical
+        .filter(|typical| verdict == Verdict::Consistent && !typical.fitted_is_missed(matters_above_n))
+        .filter(|_| is_missed || held::misses_any(&fitted.evaluation, &held.evaluation));
     let pooled =
-        asks_held.then(|| Pooled::of(&estimation, &holdout, &model, &question.limits, &rig, &typical)).flatten();
+        in_question.and_then(|alone| Pooled::of(&estimation, &holdout, &model, &question.limits, &rig, &alone));
     let typically_misses = is_missed && pooled.is_none();
     let periodic = periodic::periodic(fitted_traces.par_iter().chain(&held_traces));
     let swings = periodic.is_some_and(|periodic| periodic::matters(&periodic, sizes.beyond_noise_n()));

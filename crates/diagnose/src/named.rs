@@ -103,10 +103,8 @@ pub(crate) fn named(
         parameters.extend(past_entries(guess));
         first += guess.amplitudes().len();
         let alternatives = alternatives(found, index);
-        let separating_test = alternatives
-            .iter()
-            .find_map(|id| page.confused_with.iter().find(|confusion| confusion.id == *id))
-            .map_or(page.test, |confusion| confusion.test);
+        let separating_test =
+            alternatives.iter().find_map(|id| page.confusion_with(id)).map_or(page.test, |confusion| confusion.test);
         let evidence = evidence_of(found, index);
         let entry = EffectEntry::new(page.id, parameters.clone());
         list.push(own::entry(entry, &sentences[index], guess.shape.len()));

@@ -129,7 +129,7 @@ pub fn alternatives(found: &Found, index: usize) -> Vec<&'static str> {
         .filter(|rival| rival.guess.id() != found.best.state.guesses[index].id())
         .filter(|rival| {
             let page = found.best.state.guesses[index].effect.page();
-            let declared = page.confused_with.iter().any(|confusion| confusion.id == rival.guess.id());
+            let declared = page.confusion_with(rival.guess.id()).is_some();
             let share = if declared { DECLARED_RIVAL } else { RIVAL };
             rival.log_ratio > share * own && without.mean_square() - rival.held_out.mean_square() > share * gained
         })

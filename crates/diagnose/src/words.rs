@@ -254,6 +254,7 @@ mod tests {
         assert!(beside.gain(&[]).starts_with("with that, a smooth static map and empirical terms the RMSE falls"));
         assert_eq!(beside.share_unexplained(&[]), 1.0);
     }
+
     #[test]
     fn a_map_is_said_to_model_a_part_where_it_lowers_the_error_of_what_was_held_out_or_else_of_what_was_fitted() {
         assert!(of_map(Some((3.0, 1.5)), (2.0, 1.0)).ends_with("the RMSE on held-out recordings from 3.00 to 1.50 N."));

@@ -37,3 +37,24 @@ pub struct Request {
     /// Show what the columns reach without bounds.
     pub unbounded: bool,
 }
+
+impl Request {
+    /// A search of the size of `options` for the corrected eq. 11 of `muscle` in `estimation`, with nothing else asked or assumed.
+    pub fn of(estimation: Vec<Recording>, muscle: MuscleFile, options: FitOptions) -> Self {
+        Self {
+            estimation,
+            validation: Vec::new(),
+            muscle,
+            form: Form::Corrected,
+            options,
+            loss: Loss::Square,
+            free: Vec::new(),
+            fix: Vec::new(),
+            length_play_m: None,
+            pressure_play_pa: None,
+            assumed: Assumed::default(),
+            accept_implausible: false,
+            unbounded: false,
+        }
+    }
+}

@@ -6,12 +6,11 @@
 #![expect(clippy::print_stdout, clippy::unwrap_used, reason = "a test that fails may panic, and says what it measured")]
 
 use pam_artifact::Tool;
-use pam_artifact::model::{Assumed, BladderLaw, FrictionLaw, Loss, ModelArtifact};
+use pam_artifact::model::{Assumed, BladderLaw, FrictionLaw, ModelArtifact};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
 use pam_identification::search_space::LATEX_RATIO;
 use pam_muscle::MuscleFile;
-use pam_muscle::force::Form;
 use pam_recording::{Recording, Repairs, Samples};
 use pam_virtual_bench::{Bench, Options, Parameters, TrueMuscle, command};
 use rand::{RngExt, SeedableRng};
@@ -84,26 +83,17 @@ fn identify(muscle: &TrueMuscle, seed: u64, sensing: Sensing) -> ModelArtifact {
         .zip(0..)
         .map(|(&(name, scale), n)| record(muscle, name, scale, 10 * seed + n, sensing))
         .collect();
+    let file = MuscleFile {
+        name: None,
+        muscle: muscle.muscle().clone(),
+        fit: Vec::new(),
+        strand_modulus_pa: muscle.contact_modulus_pa(),
+    };
+    let options = FitOptions { n_starts: 1, seed, ..FitOptions::default() };
     let checked = check(Request {
-        estimation,
-        validation: Vec::new(),
-        muscle: MuscleFile {
-            name: None,
-            muscle: muscle.muscle().clone(),
-            fit: Vec::new(),
-            strand_modulus_pa: muscle.contact_modulus_pa(),
-        },
-        form: Form::Corrected,
-        options: FitOptions { n_starts: 1, seed, ..FitOptions::default() },
-        loss: Loss::Square,
-        free: Vec::new(),
-        fix: Vec::new(),
-        length_play_m: None,
-        pressure_play_pa: None,
         // The bench's muscles have rubber of one share and one friction; what is free beside would share their errors.
         assumed: Assumed { bladder: Some(BladderLaw::Shared), friction: Some(FrictionLaw::Rubber), standstill: None },
-        accept_implausible: false,
-        unbounded: false,
+        ..Request::of(estimation, file, options)
     })
     .unwrap();
     let config = checked.config();

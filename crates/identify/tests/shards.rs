@@ -7,13 +7,12 @@
 
 use pam_artifact::Tool;
 use pam_artifact::agreement::AgreementArtifact;
-use pam_artifact::model::{Assumed, Loss, ModelArtifact};
+use pam_artifact::model::ModelArtifact;
 use pam_artifact::summary::{Shard, SummaryArtifact};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
 use pam_identification::shards::{Head, ShardError, Step, advance, summarize};
 use pam_muscle::MuscleFile;
-use pam_muscle::force::Form;
 use pam_recording::{CHUNK_ROWS, Recording, Repairs, Samples, sha256_hex};
 use pam_virtual_bench::{Bench, Concealed, Options, TrueMuscle, command};
 use rand::{RngExt, SeedableRng};
@@ -91,26 +90,13 @@ fn long(n_rows: usize, pause_s: f64, effect: Option<&str>) -> Log {
 
 fn request(estimation: Vec<Recording>) -> Request {
     let muscle = TrueMuscle::nominal();
-    Request {
-        estimation,
-        validation: Vec::new(),
-        muscle: MuscleFile {
-            name: None,
-            muscle: muscle.muscle().clone(),
-            fit: Vec::new(),
-            strand_modulus_pa: muscle.contact_modulus_pa(),
-        },
-        form: Form::Corrected,
-        options: FitOptions::default(),
-        loss: Loss::Square,
-        free: Vec::new(),
-        fix: Vec::new(),
-        length_play_m: None,
-        pressure_play_pa: None,
-        assumed: Assumed::default(),
-        accept_implausible: false,
-        unbounded: false,
-    }
+    let file = MuscleFile {
+        name: None,
+        muscle: muscle.muscle().clone(),
+        fit: Vec::new(),
+        strand_modulus_pa: muscle.contact_modulus_pa(),
+    };
+    Request::of(estimation, file, FitOptions::default())
 }
 
 fn tool() -> Tool {

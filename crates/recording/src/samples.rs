@@ -123,10 +123,8 @@ impl Samples {
     /// Where a temporary file cannot be read or written.
     pub fn slice(&self, rows: Range<usize>) -> io::Result<Self> {
         let mut builder = SamplesBuilder::new(self.layout.has_force, self.layout.has_temperature, MEMORY_ROWS);
-        for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
-            let chunk = self.chunk(index)?;
-            let here = rows.start.max(chunk.first_row) - chunk.first_row
-                ..rows.end.min(chunk.first_row + chunk.n_rows) - chunk.first_row;
+        for of_chunk in self.parts(rows) {
+            let (chunk, here) = of_chunk?;
             let part = |column: &'_ [f64]| column.get(here.clone()).map(<[f64]>::to_vec).unwrap_or_default();
             let columns =
                 [chunk.time_s(), chunk.pressure_pa(), chunk.length_m(), chunk.force_n(), chunk.temperature_k()]
@@ -137,17 +135,13 @@ impl Samples {
         Ok(sliced.with_sensor_ranges(self.sensor_ranges))
     }
 
-    /// Calls `visit` with every chunk that has some of `rows`, and which of its own rows those are.
-    ///
-    /// # Errors
-    /// Where the temporary file cannot be read.
-    pub fn for_rows(&self, rows: &Range<usize>, mut visit: impl FnMut(&Chunk, Range<usize>)) -> io::Result<()> {
-        for index in rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS) {
+    /// Every chunk that has some of `rows` in turn, and which of its own rows those are.
+    pub fn parts(&self, rows: Range<usize>) -> impl Iterator<Item = io::Result<(Chunk, Range<usize>)>> + '_ {
+        (rows.start / CHUNK_ROWS..rows.end.div_ceil(CHUNK_ROWS)).map(move |index| {
             let chunk = self.chunk(index)?;
             let (first, n) = (chunk.first_row, chunk.n_rows);
-            visit(&chunk, rows.start.max(first) - first..rows.end.min(first + n) - first);
-        }
-        Ok(())
+            Ok((chunk, rows.start.max(first) - first..rows.end.min(first + n) - first))
+        })
     }
 
     /// Every chunk in turn.

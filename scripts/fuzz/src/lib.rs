@@ -7,11 +7,9 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use pam_artifact::ModelArtifact;
-use pam_artifact::model::Loss;
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
 use pam_muscle::MuscleFile;
-use pam_muscle::force::Form;
 use pam_recording::{ReadOptions, Recording, read_recording};
 
 /// Gives `bytes` to `take` as a file, as every reader wants one. The file is the same one each time.
@@ -63,21 +61,8 @@ pub fn short_recording() -> Recording {
 
 /// Identifies `muscle` from `recording`, with as little search as there can be.
 pub fn fit_shortly(muscle: MuscleFile, recording: Recording, accept_implausible: bool) {
-    let request = Request {
-        estimation: vec![recording],
-        validation: Vec::new(),
-        muscle,
-        form: Form::Corrected,
-        options: FitOptions { n_particles: 4, n_iterations: 2, n_starts: 1, seed: 1, polish: true },
-        loss: Loss::Square,
-        free: Vec::new(),
-        fix: Vec::new(),
-        length_play_m: None,
-        pressure_play_pa: None,
-        assumed: pam_artifact::model::Assumed::default(),
-        accept_implausible,
-        unbounded: true,
-    };
+    let options = FitOptions { n_particles: 4, n_iterations: 2, n_starts: 1, seed: 1, polish: true };
+    let request = Request { accept_implausible, unbounded: true, ..Request::of(vec![recording], muscle, options) };
     if let Ok(checked) = check(request) {
         let _ = checked.identify();
     }

@@ -1,12 +1,10 @@
 //! A folder with recordings of the nominal muscle and the model that a fit finds, and the program in it.
 
 use pam_artifact::diagnosis::Verdict;
-use pam_artifact::model::Loss;
 use pam_artifact::{DiagnosisArtifact, Input, InputRole, ModelArtifact, Tool};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
 use pam_muscle::MuscleFile;
-use pam_muscle::force::Form;
 use pam_recording::{ReadOptions, Recording, read_recording};
 
 use pam_virtual_bench::{Bench, Concealed, Options, Parameters, TrueMuscle, command};
@@ -149,21 +147,7 @@ impl Desk {
 
 /// The model that a fit of `muscle` to `logs` finds.
 pub(crate) fn identified(muscle: MuscleFile, logs: Vec<Recording>, options: FitOptions) -> ModelArtifact {
-    let request = Request {
-        estimation: logs,
-        validation: Vec::new(),
-        muscle,
-        form: Form::Corrected,
-        options,
-        loss: Loss::Square,
-        free: Vec::new(),
-        fix: Vec::new(),
-        length_play_m: None,
-        pressure_play_pa: None,
-        assumed: pam_artifact::model::Assumed::default(),
-        accept_implausible: true,
-        unbounded: false,
-    };
+    let request = Request { accept_implausible: true, ..Request::of(logs, muscle, options) };
     let checked = check(request).unwrap();
     let config = checked.config();
     let tool = Tool { name: "pam-identify".to_owned(), version: "0.1.0".to_owned() };

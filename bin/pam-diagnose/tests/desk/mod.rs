@@ -3,12 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use pam_artifact::model::{Assumed, Loss};
 use pam_artifact::{Input, InputRole, Tool};
 use pam_identification::fit::FitOptions;
 use pam_identification::identify::{Request, check};
 use pam_muscle::MuscleFile;
-use pam_muscle::force::Form;
 use pam_recording::{ReadOptions, read_recording};
 
 use pam_virtual_bench::{Bench, Concealed, Options, Parameters, TrueMuscle, command};
@@ -68,21 +66,9 @@ impl Desk {
     pub(crate) fn identify(&self, series: &str, model: &str) {
         let logs = logs(series);
         let read = |name: &str| read_recording(&self.path(name), &ReadOptions::default()).unwrap();
-        let request = Request {
-            estimation: logs.split(' ').map(read).collect(),
-            validation: Vec::new(),
-            muscle: muscle_file(),
-            form: Form::Corrected,
-            options: FitOptions { n_particles: 30, n_iterations: 60, n_starts: 1, seed: 1, polish: true },
-            loss: Loss::Square,
-            free: Vec::new(),
-            fix: Vec::new(),
-            length_play_m: None,
-            pressure_play_pa: None,
-            assumed: Assumed::default(),
-            accept_implausible: true,
-            unbounded: false,
-        };
+        let options = FitOptions { n_particles: 30, n_iterations: 60, n_starts: 1, seed: 1, polish: true };
+        let request = Request::of(logs.split(' ').map(read).collect(), muscle_file(), options);
+        let request = Request { accept_implausible: true, ..request };
         let checked = check(request).unwrap();
         let config = checked.config();
         let tool = Tool { name: "pam-identify".to_owned(), version: "0.1.0".to_owned() };

@@ -100,8 +100,7 @@ pub(super) fn taken(members: &[Member<'_>], found: &[Shared]) -> Outcome {
             .map(|other| (other.guess.id(), other.log_ratio()))
             .filter(|(id, _)| *id != chosen.guess.id() && !denied.contains(id) && !apart.contains(id))
             .filter(|(id, log_ratio)| {
-                let confused = chosen.guess.effect.page().confused_with;
-                let declared = confused.iter().any(|confusion| confusion.id == *id);
+                let declared = chosen.guess.effect.page().confusion_with(id).is_some();
                 *log_ratio > if declared { DECLARED_RIVAL } else { RIVAL } * chosen.log_ratio()
             })
             .map(|(id, _)| id)

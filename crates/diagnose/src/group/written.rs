@@ -47,8 +47,7 @@ impl Group {
 
 fn effect(taken: &Taken, muscles: &[Muscle]) -> RigEffect {
     let page = taken.guess.effect.page();
-    let confusion = |id: &&str| page.confused_with.iter().find(|confusion| confusion.id == *id);
-    let confused = taken.rivals.iter().find_map(confusion);
+    let confused = taken.rivals.iter().find_map(|id| page.confusion_with(id));
     RigEffect {
         id: page.id.to_owned(),
         name: page.name.to_owned(),

@@ -200,10 +200,9 @@ fn likelier(setting: &Setting<'_>, best: &Judged, index: usize, seen: &Seen, pro
     let gain = |with: &HeldOut| rest.held_out.mean_square() - with.mean_square();
     let own = (rest.held_out.log_ratio(&best.held_out), gain(&best.held_out));
     let is_as_likely = |with: &HeldOut, log_ratio: f64| log_ratio > own.0 - SUSPECTED && gain(with) > RIVAL * own.1;
-    let is_confused = |id: &str| fault.page().confused_with.iter().any(|confusion| confusion.id == id);
     let other = rivals.iter().find(|rival| {
         rival.guess.effect.kind() != Kind::Instrument
-            && is_confused(rival.guess.id())
+            && fault.page().confusion_with(rival.guess.id()).is_some()
             && is_as_likely(&rival.held_out, rival.log_ratio)
     })?;
     let next = at_rest(setting, polished(setting, settle(setting, &rest, other)?)?)?;

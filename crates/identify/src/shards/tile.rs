@@ -57,12 +57,13 @@ pub(super) fn samples_of(rows: &[&Rows]) -> Samples {
 pub(super) fn rows_of(samples: &Samples, first_row: usize, rows: Range<usize>) -> io::Result<Rows> {
     let mut handed = Rows { first_row: rows.start, ..Rows::default() };
     let rows = rows.start - first_row..rows.end - first_row;
-    samples.for_rows(&rows, |chunk, here| {
+    for part in samples.parts(rows) {
+        let (chunk, here) = part?;
         handed.time_s.extend_from_slice(&chunk.time_s()[here.clone()]);
         handed.pressure_pa.extend_from_slice(&chunk.pressure_pa()[here.clone()]);
         handed.length_m.extend_from_slice(&chunk.length_m()[here.clone()]);
         handed.force_n.extend_from_slice(&chunk.force_n()[here]);
-    })?;
+    }
     Ok(handed)
 }
 

@@ -241,7 +241,8 @@ impl Direction {
                 continue;
             }
             let (mut pressure_pa, mut without_n, mut with_n) = (Vec::new(), Vec::new(), Vec::new());
-            recording.samples.for_rows(&unknown, |chunk, rows| {
+            for part in recording.samples.parts(unknown.clone()) {
+                let (chunk, rows) = part?;
                 for row in rows {
                     let (pressure, length) = (chunk.pressure_pa()[row], chunk.length_m()[row]);
                     let [neither_n, one_n] = forces_n(chunk.first_row() + row, pressure, length);
@@ -249,7 +250,7 @@ impl Direction {
                     without_n.push(chunk.force_n()[row] - neither_n);
                     with_n.push(one_n - neither_n);
                 }
-            })?;
+            }
             let smooth_pa = moving_average(&pressure_pa, 2);
             let left = |states: &[State]| -> f64 {
                 let rows = states.iter().zip(without_n.iter().zip(&with_n));
@@ -329,11 +330,12 @@ type Columns = (Vec<f64>, Vec<f64>, Vec<f64>);
 /// Time, pressure and length of `rows`.
 fn rows(recording: &Recording, rows: &Range<usize>) -> io::Result<Columns> {
     let (mut time_s, mut pressure_pa, mut length_m) = (Vec::new(), Vec::new(), Vec::new());
-    recording.samples.for_rows(rows, |chunk, rows| {
+    for part in recording.samples.parts(rows.clone()) {
+        let (chunk, rows) = part?;
         time_s.extend_from_slice(&chunk.time_s()[rows.clone()]);
         pressure_pa.extend_from_slice(&chunk.pressure_pa()[rows.clone()]);
         length_m.extend_from_slice(&chunk.length_m()[rows]);
-    })?;
+    }
     Ok((time_s, pressure_pa, length_m))
 }
 

@@ -85,6 +85,13 @@ pub struct Page {
     pub drivers: &'static [&'static str],
 }
 
+impl Page {
+    /// Why it is confused with the effect `id`, and the test that separates the two; none where the page does not say that it is.
+    pub fn confusion_with(&self, id: &str) -> Option<&'static Confusion> {
+        self.confused_with.iter().find(|confusion| confusion.id == id)
+    }
+}
+
 /// An effect at typical sizes, SI: each shape with each amplitude alone is one form of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Typical {

@@ -159,7 +159,8 @@ impl Rows {
             force_n: column(samples.has_force()),
             temperature_k: column(samples.has_temperature()),
         };
-        samples.for_rows(&rows, |chunk, range| {
+        for part in samples.parts(rows) {
+            let (chunk, range) = part?;
             columns.time_s.extend_from_slice(&chunk.time_s()[range.clone()]);
             columns.pressure_pa.extend_from_slice(&chunk.pressure_pa()[range.clone()]);
             columns.length_m.extend_from_slice(&chunk.length_m()[range.clone()]);
@@ -169,7 +170,7 @@ impl Rows {
             if samples.has_temperature() {
                 columns.temperature_k.extend_from_slice(&chunk.temperature_k()[range]);
             }
-        })?;
+        }
         Ok(columns)
     }
 }
