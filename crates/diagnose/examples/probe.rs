@@ -27,7 +27,7 @@ fn main() {
         confirmed: false,
     };
     let question = DiagnosisProblem::new(&prepared, &model, limits);
-    let SearchOutcome { track, found, knocks, sizes, .. } = question.answer(&track, &|| {}).unwrap();
+    let SearchOutcome { track, found, mass, sizes, .. } = question.answer(&track, &|| {}).unwrap();
     let setting = question.setting(&track, &found.nuisance);
     println!(
         "base {:.3} N, floor {:.3} N, sensor floor {:.3} N",
@@ -80,12 +80,12 @@ fn main() {
     if let Some(left) = &found.left {
         println!("left unnamed: {:.3} N", left.held_out.mean_square().sqrt());
     }
-    println!("knocks {knocks:?}");
-    let verdict = pam_diagnosis::verdict::verdict(&found, &sizes, knocks.is_some());
+    println!("mass {mass:?}");
+    let verdict = pam_diagnosis::verdict::verdict(&found, &sizes, mass.is_some());
     let alternatives: Vec<Vec<&str>> =
         (0..found.taken.len()).map(|i| pam_diagnosis::verdict::alternatives(&found, i)).collect();
     let mut names: Vec<&str> = found.best.state.guesses.iter().map(|guess| guess.id()).collect();
-    names.extend(knocks.iter().map(|_| pam_diagnosis::knocks::ID));
+    names.extend(mass.iter().map(|_| pam_diagnosis::mass::ID));
     let firsts: Vec<String> = found
         .first
         .iter()

@@ -24,7 +24,7 @@ use crate::given::Given;
 use crate::held;
 use crate::held_error::Left;
 use crate::isolability::isolability;
-use crate::knocks::{self, InertialTransient};
+use crate::mass::{self, MovingMass};
 use crate::named::candidates;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::periodic;
@@ -36,6 +36,7 @@ use crate::resting_step;
 use crate::rig;
 use crate::search::Limits;
 use crate::standing::{Standing, unexplained};
+use crate::track::Track;
 use crate::typical::Typical;
 use crate::uncertainty::{Uncertainty, correlated_instants};
 use crate::verdict::Sizes;
@@ -212,7 +213,10 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let question = DiagnosisProblem::new(&estimation, &model, limits);
     let held = (!holdout.is_empty()).then(|| rig::track(&holdout, &model, &rig)).transpose()?;
     let held = held.map(|held| question.without_mistaken(&held));
-    let Standing { track, mut found, knocks, step, mut sizes, too_short } =
+    // As a mass that knocks was taken off what was fitted, one that swings is of both.
+    let swings = outcome.mass.clone().filter(|mass| !mass.knocks());
+    let held = held.map(|held| swings.iter().fold(held, Track::without));
+    let Standing { track, mut found, mass, step, mut sizes, too_short } =
         Standing::of(&question, outcome, held.as_ref())?;
     let nuisance = found.nuisance.clone();
     let setting = question.setting(&track, &nuisance);
@@ -223,7 +227,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     };
     let against = held.as_ref().map(|_| discover::HeldAgainst { left: &held_left, given: &as_given });
     let space = &question.space;
-    let besides: Vec<&str> = knocks.iter().map(|_| knocks::ID).chain(step.iter().map(|_| resting_step::ID)).collect();
+    let besides: Vec<&str> = mass.iter().map(|_| mass::ID).chain(step.iter().map(|_| resting_step::ID)).collect();
     observer(steps - 1, steps);
     let (verdict, discovery) =
         discover::beside_names(&setting, &mut found, &mut sizes, &question.limits, !besides.is_empty(), against);
@@ -251,7 +255,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         state,
         found: &found,
         discovery: discovery.as_ref(),
-        knocks: knocks.as_ref(),
+        mass: mass.as_ref(),
         step: step.as_ref(),
         folds: &folds,
         uncertainty: &uncertainty,
@@ -295,21 +299,22 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         if verdict == Verdict::Consistent && (typically_misses || swings) { Verdict::Unexplained } else { verdict };
     let mut regions =
         if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &question.paths()) };
-    if let Some(knocks) = &knocks {
-        let at = if written.effects[0].id == knocks::ID { 0 } else { regions.len() };
-        regions.insert(at, knocks.region(sizes.mismatch_n));
+    if let Some(region) = mass.as_ref().and_then(|mass| mass.region(sizes.mismatch_n)) {
+        let at = if written.effects[0].id == mass::ID { 0 } else { regions.len() };
+        regions.insert(at, region);
     }
     regions.extend(step.as_ref().map(|step| step.region(sizes.mismatch_n, &question.paths())));
     let unexplained =
         if verdict == Verdict::Unexplained { unexplained(&question, &setting, &found) } else { Vec::new() };
     let isolability =
         isolability(&setting, &found.base.state, sizes.floor_n, track.n_counted() as f64 / correlated.max(1.0));
-    // Where the mass that knocks is all there is to confirm.
-    let mass = || {
-        let knocks = knocks.as_ref().filter(|_| verdict == Verdict::Explained)?;
-        confirm_mass(InertialTransient::effect(), knocks.mass_kg(), state, &model.domain)
+    // Where the mass is all there is to confirm.
+    let confirmed = || {
+        let mass = mass.as_ref().filter(|_| verdict == Verdict::Explained)?;
+        confirm_mass(MovingMass::effect(), mass.mass_kg(), state, &model.domain)
     };
-    let next_experiment = next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(mass);
+    let next_experiment =
+        next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(confirmed);
     let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, &besides));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();

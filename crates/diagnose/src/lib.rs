@@ -27,9 +27,8 @@ mod held_error;
 pub mod hypothesis;
 pub mod isolability;
 pub mod joint;
-pub mod knocks;
 mod laws;
-
+pub mod mass;
 mod named;
 pub mod next_experiment;
 pub mod normal;

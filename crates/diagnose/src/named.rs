@@ -6,7 +6,7 @@ use pam_muscle::effects::{Effect, Sentence, Term};
 
 use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
-use crate::knocks::InertialTransient;
+use crate::mass::MovingMass;
 use crate::nuisance::MAP_ID;
 use crate::own;
 use crate::search::{Found, chance};
@@ -45,10 +45,10 @@ pub(crate) fn named_besides(effect: &dyn Effect, parameters: Vec<ParameterEntry>
     }
 }
 
-/// The mass behind `knocks`.
-pub(crate) fn knocking(knocks: &InertialTransient) -> NamedEffect {
-    let evidence = evidence(&knocks.without, &knocks.with, 1);
-    named_besides(InertialTransient::effect(), knocks.entries(), evidence)
+/// A mass that moves.
+pub(crate) fn moving(mass: &MovingMass) -> NamedEffect {
+    let evidence = evidence(&mass.without, &mass.with, 1);
+    named_besides(MovingMass::effect(), mass.entries(), evidence)
 }
 
 /// What the muscle has been through when the recordings end, where that goes on in others.

@@ -1,4 +1,4 @@
-//! What a search is made with, and the search itself: on the grid, then for knocks or a step at rest, and then on the grid without them.
+//! What a search is made with, and the search itself: on the grid, then for a mass or a step at rest, and then on the grid without them.
 
 use pam_artifact::ModelArtifact;
 use pam_identification::prepare::Prepared;
@@ -8,7 +8,7 @@ use pam_muscle::force::columns::ForceColumns;
 
 use crate::base;
 use crate::error::DiagnoseError;
-use crate::knocks::{self, InertialTransient, Residual};
+use crate::mass::{self, MovingMass};
 use crate::nuisance::{self, Nuisance};
 use crate::resting_step::{self, RestingStep};
 use crate::search::{Found, Limits, search};
@@ -37,12 +37,12 @@ pub struct DiagnosisProblem<'a> {
 /// What came out.
 #[derive(Debug)]
 pub struct SearchOutcome {
-    /// The recordings, without what knocks touch where a mass was named, and without a step at rest.
+    /// The recordings, without the pull of a mass that was named, and what it knocks does not count, and without a step at rest.
     pub track: Track,
     /// What the search found on it.
     pub found: Found,
-    /// A mass that knocks.
-    pub knocks: Option<InertialTransient>,
+    /// A mass that moves.
+    pub mass: Option<MovingMass>,
     /// A step of the force at rest.
     pub(crate) step: Option<RestingStep>,
     /// Sizes that a verdict rests on.
@@ -88,18 +88,31 @@ impl<'a> DiagnosisProblem<'a> {
     pub fn answer(&self, track: &Track, looked: &dyn Fn()) -> Result<SearchOutcome, DiagnoseError> {
         let track = self.without_mistaken(track);
         let (found, sizes) = self.search(&track, looked)?;
-        let Some(first) = self.knocks(&found, &sizes, Residual::WithSpeed)? else {
-            return self.beside_step(SearchOutcome { track, found, knocks: None, step: None, sizes }, looked);
+        let explained = Self::beside_mass(&found);
+        let limits = &self.limits;
+        let first = MovingMass::that_matters(self.estimation, &explained, self.model, limits, &sizes)?;
+        let Some(first) = first else {
+            return self.beside_step(SearchOutcome { track, found, mass: None, step: None, sizes }, looked);
         };
-        // What knocks leave on the grid around them would hide the rest, and would be taken for something else. The mass itself
-        // is known better from them than from what is smooth.
+        // What a mass leaves on the grid would hide the rest, and would be taken for something else. The mass itself is known better
+        // from where it knocks, or from what is fast, than from all that is there.
         let track = track.without(&first);
         let first_look = found.first;
-        let (mut found, sizes) = self.without([knocks::ID]).search(&track, looked)?;
+        let others = self.without([mass::ID]);
+        let (mut found, sizes) = others.search(&track, looked)?;
         found.first = first_look;
-        let knocks = self.knocks(&found, &sizes, Residual::Explained)?.unwrap_or_else(|| first.within_range());
-        let sizes = sizes.with(knocks.all_rows_n);
-        Ok(SearchOutcome { track, found, knocks: Some(knocks), step: None, sizes })
+        let mass = first.again(self.estimation, &Self::beside_mass(&found), self.model, &sizes)?;
+        let sizes = sizes.with(mass.all_rows_n);
+        let knocks = mass.knocks();
+        let outcome = SearchOutcome { track, found, mass: Some(mass), step: None, sizes };
+        if knocks { Ok(outcome) } else { others.beside_step(outcome, looked) }
+    }
+
+    /// Base and effects that were `found`, without a mass.
+    fn beside_mass(found: &Found) -> AugmentedModel {
+        let state = &found.best.state;
+        let others = state.terms().into_iter().filter(|term| term.effect.page().id != mass::ID).collect();
+        AugmentedModel::new(state.model.clone(), others)
     }
 
     /// `outcome`, or the same beside a step of the force at rest where one is there that matters, and no more is left than it may leave.
@@ -126,8 +139,9 @@ impl<'a> DiagnosisProblem<'a> {
             if left(&found) < least.min(step.may_leave(before, &named)) {
                 least = left(&found);
                 let step = step.compared(&found.best.held_out);
-                let sizes = sizes.with(step.all_instants_n);
-                best = Some(SearchOutcome { track, found, knocks: None, step: Some(step), sizes });
+                let of_mass_n = outcome.mass.as_ref().map_or(0.0, |mass| mass.all_rows_n);
+                let sizes = sizes.with(step.all_instants_n.hypot(of_mass_n));
+                best = Some(SearchOutcome { track, found, mass: outcome.mass.clone(), step: Some(step), sizes });
             }
         }
         Ok(match best {
@@ -165,17 +179,5 @@ impl<'a> DiagnosisProblem<'a> {
                 .ok_or_else(|| DiagnoseError::Undetermined { path: self.estimation[0].recording.path.clone() })?;
         let sizes = Sizes::of(&found, &self.limits);
         Ok((found, sizes))
-    }
-
-    fn knocks(
-        &self,
-        found: &Found,
-        sizes: &Sizes,
-        residual: Residual,
-    ) -> Result<Option<InertialTransient>, DiagnoseError> {
-        let state = &found.best.state;
-        let others = state.terms().into_iter().filter(|term| term.effect.page().id != knocks::ID).collect();
-        let explained = AugmentedModel::new(state.model.clone(), others);
-        Ok(InertialTransient::that_matter(self.estimation, &explained, self.model, &self.limits, sizes, residual)?)
     }
 }

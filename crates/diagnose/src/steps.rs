@@ -17,6 +17,10 @@ const SHARP_S: f64 = 0.25;
 /// comes and goes with the motion is made up for by one constant from one instant on. Of the ten slips that this was chosen by eight
 /// are named with it, and four without; of 116 healthy and nameless cases none gets a step by it.
 const SLIPS: f64 = 0.5;
+/// The same of one that takes up to [`LONG_S`].
+const SLIPS_SLOWLY: f64 = 0.7;
+/// What "just" means for that, in s.
+const LONG_S: f64 = 2.5;
 
 /// Whether the residual itself jumps at the instant of a step of `step_n`, and by about as much: whatever drifts instead is no
 /// step. One that takes away the share `gained` of the mean square may take longer, as a bond does that slips.
@@ -26,12 +30,12 @@ pub(crate) fn is_sudden(setting: &Setting<'_>, residuals_n: &[f64], shape: &[f64
         let jump_n = jump_n(setting, residuals_n, range.clone(), shape[1], near_s);
         jump_n.is_some_and(|jump_n| jump_n / step_n > 0.6 && jump_n / step_n < 1.7)
     };
-    within(NEAR_S) && (gained > SLIPS || within(SHARP_S))
+    within(NEAR_S) && (gained > SLIPS || within(SHARP_S)) || gained > SLIPS_SLOWLY && within(LONG_S)
 }
 
 /// Median residual just after an instant less that just before it, over as many of the nearest instants that count as there are
-/// within `near_s`; none where too little of either is within [`NEAR_S`]. A median, since friction that turns over beside the instant
-/// leaves a spike there which is no jump.
+/// within `near_s`; none where too little of either is within [`NEAR_S`], or within that where it is longer. A median, since friction
+/// that turns over beside the instant leaves a spike there which is no jump.
 fn jump_n(
     setting: &Setting<'_>,
     residuals_n: &[f64],
@@ -44,7 +48,7 @@ fn jump_n(
     let middle = range.start + instants[range.clone()].partition_point(|instant| instant.moment.time_s < instant_s);
     let median_n = |side: &mut dyn Iterator<Item = usize>| {
         let (mut wanted, mut values_n) = (0_usize, Vec::new());
-        for at in side.take_while(|&at| apart_s(at) <= NEAR_S) {
+        for at in side.take_while(|&at| apart_s(at) <= near_s.max(NEAR_S)) {
             wanted += usize::from(apart_s(at) <= near_s);
             if apart_s(at) > near_s && values_n.len() >= wanted {
                 break;
@@ -105,12 +109,23 @@ const OTHERS: usize = 4;
 /// Parts from which on one of them may jump as much: where a recording begins, friction is as something before it left it.
 const MANY: usize = 8;
 
+/// Share by which two jumps differ that are the same one, seen from either side.
+const SAME: f64 = 0.05;
+
 /// Whether a jump of `own_n` in the given part stands alone among the largest of the parts in which drives stir, or rest, at all; its
 /// neighbours do not count, for it may reach into them.
 pub(crate) fn stands_alone(largest_n: &[Option<f64>; PARTS], part: usize, own_n: f64) -> bool {
-    let elsewhere = largest_n.iter().enumerate().filter(|(other, _)| other.abs_diff(part) > 1);
-    let jumps_n: Vec<f64> = elsewhere.filter_map(|(_, jump_n)| *jump_n).collect();
-    let as_large = jumps_n.iter().filter(|&&jump_n| own_n <= ALONE * jump_n).count();
+    let elsewhere = |other: usize| if other.abs_diff(part) > 1 { largest_n[other] } else { None };
+    let jumps_n: Vec<f64> = (0..PARTS).filter_map(elsewhere).collect();
+    // One that comes between two parts is seen in both.
+    let is_seen_before = |other: usize| {
+        let (Some(jump_n), Some(before_n)) = (elsewhere(other), other.checked_sub(1).and_then(elsewhere)) else {
+            return false;
+        };
+        (jump_n / before_n - 1.0).abs() < SAME
+    };
+    let is_as_large = |other: usize| elsewhere(other).is_some_and(|jump_n| own_n <= ALONE * jump_n);
+    let as_large = (0..PARTS).filter(|&other| is_as_large(other) && !is_seen_before(other)).count();
     jumps_n.len() >= OTHERS && as_large <= usize::from(jumps_n.len() >= MANY)
 }
 
@@ -218,6 +233,25 @@ mod tests {
         let residuals_n = setting.residuals_n(&state);
         let is_one = |gained| is_sudden(&setting, &residuals_n, &[0.0, middle_s + 0.4], 5.0, gained);
         assert!(!is_one(0.4) && is_one(0.6));
+    }
+
+    #[test]
+    fn a_force_that_slips_within_two_seconds_is_one_where_next_to_nothing_else_is_left() {
+        let (given, middle_s) = stepped(2.0);
+        let setting = given.setting();
+        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+        let residuals_n = setting.residuals_n(&state);
+        let is_one = |gained| is_sudden(&setting, &residuals_n, &[0.0, middle_s + 1.0], 5.0, gained);
+        assert!(!is_one(0.6) && is_one(0.8));
+    }
+
+    #[test]
+    fn a_jump_between_two_parts_is_one_and_not_two() {
+        let mut largest_n = [Some(1.0); PARTS];
+        (largest_n[3], largest_n[4]) = (Some(3.0), Some(3.02));
+        assert!(stands_alone(&largest_n, 10, 3.5));
+        largest_n[4] = Some(2.0);
+        assert!(!stands_alone(&largest_n, 10, 3.5));
     }
 
     #[test]

@@ -14,7 +14,7 @@ use pam_muscle::motion::{Channels, Instant, walk};
 use pam_muscle::shift::shifted;
 use rayon::prelude::*;
 
-use crate::knocks::InertialTransient;
+use crate::mass::MovingMass;
 
 /// Time between instants, in s, as long as there are fewer than [`MOST_INSTANTS`].
 const PERIOD_S: f64 = 0.02;
@@ -153,17 +153,17 @@ impl Track {
         }
     }
 
-    /// The same, but what `knocks` touch does not count, and the pull of their mass is taken off the rest.
+    /// The same without the pull of `mass`; where it knocks, nothing counts.
     #[must_use]
-    pub fn without(mut self, knocks: &InertialTransient) -> Self {
+    pub fn without(mut self, mass: &MovingMass) -> Self {
         for range in &self.recordings {
-            let mut mount = knocks.mount();
+            let mut mount = mass.mount();
             for instant in &mut self.instants[range.clone()] {
                 let behind = mount.follow(instant.moment.acceleration_m_per_s2, instant.moment.step_s);
-                instant.force_n += knocks.mass_kg() * behind;
+                instant.force_n += mass.mass_kg() * behind;
             }
         }
-        for (recording, rows) in &knocks.touched {
+        for (recording, rows) in mass.touched() {
             let range = self.recordings[*recording].clone();
             let within = &self.instants[range.clone()];
             let first = within.partition_point(|instant| instant.row < rows.start);

@@ -163,7 +163,7 @@ mod tests {
 }
 
 #[cfg(test)]
-mod cases;
+pub(crate) mod cases;
 
 #[cfg(test)]
 mod edges;

@@ -10,8 +10,8 @@ use pam_muscle::force::ForceModel;
 use crate::discover::{Discovery, HeldAgainst};
 use crate::elsewhere::{KeptToFitted, keep_to_fitted};
 use crate::joint::JointFit;
-use crate::knocks::InertialTransient;
-use crate::named::{knocking, map_entry, named, term_entry};
+use crate::mass::MovingMass;
+use crate::named::{map_entry, moving, named, term_entry};
 use crate::nuisance;
 use crate::own;
 use crate::resting_step::RestingStep;
@@ -29,8 +29,8 @@ pub(crate) struct Fit<'a> {
     pub(crate) found: &'a Found,
     /// Terms without a name beside it.
     pub(crate) discovery: Option<&'a Discovery>,
-    /// A mass that knocks.
-    pub(crate) knocks: Option<&'a InertialTransient>,
+    /// A mass that moves.
+    pub(crate) mass: Option<&'a MovingMass>,
     /// A step of the force at rest.
     pub(crate) step: Option<&'a RestingStep>,
     /// The same fit with each fold left out.
@@ -46,7 +46,7 @@ impl Fit<'_> {
     /// determine them.
     fn names_beside(&self, base: &ForceModel, sentences: &[Option<Sentence>]) -> Option<Vec<Term>> {
         let guesses = &self.state.guesses;
-        if self.discovery.is_some() || self.knocks.is_some() || self.step.is_some() {
+        if self.discovery.is_some() || self.mass.is_some() || self.step.is_some() {
             return None;
         }
         if guesses.is_empty() {
@@ -81,9 +81,9 @@ pub(crate) struct Written {
 impl Written {
     /// All that was fitted, in every recording.
     pub(crate) fn of(fit: &Fit<'_>) -> Self {
-        let Fit { setting, state, found, discovery, knocks, step, folds, .. } = *fit;
+        let Fit { setting, state, found, discovery, mass, step, folds, .. } = *fit;
         let sentences = own::sentences(setting, state);
-        let besides = knocks.map(knocking).into_iter().chain(step.map(RestingStep::named)).collect();
+        let besides = mass.map(moving).into_iter().chain(step.map(RestingStep::named)).collect();
         let (effects, mut entries) = named(setting, found, state, fit.uncertainty, fit.correlated, &sentences, besides);
         let mut terms = own::terms(state.terms(), &sentences);
         let empirical = discovery.map(|discovery| discovery.written(setting, found, folds));
@@ -93,7 +93,7 @@ impl Written {
             terms.push(map);
         }
         terms.extend(discovery.iter().flat_map(|discovery| discovery.terms()));
-        terms.extend(knocks.map(InertialTransient::term));
+        terms.extend(mass.map(MovingMass::term));
         terms.extend(step.map(RestingStep::term));
         Self { base: state.model.clone(), terms, entries, effects, empirical, kept: None, sentences }
     }

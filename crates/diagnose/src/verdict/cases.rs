@@ -43,7 +43,7 @@ pub(super) fn lag_with(found: &mut Found, rivals: &[(&str, f64, f64)]) {
 }
 
 /// A mismatch of 10 N over a floor of 1 N, all of it explained.
-pub(super) const SIZES: Sizes = Sizes {
+pub(crate) const SIZES: Sizes = Sizes {
     floor_n: 1.0,
     mismatch_n: 10.0,
     left_n: 0.0,

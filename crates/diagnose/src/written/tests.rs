@@ -24,7 +24,7 @@ fn settled(concealed: Concealed<'_>, left_n: &dyn Fn(&AugmentedModel) -> f64) ->
         state,
         found: &found,
         discovery: None,
-        knocks: None,
+        mass: None,
         step: None,
         folds: &folds,
         uncertainty: &uncertainty,

@@ -17,7 +17,7 @@ const LONGEST_S: f64 = 0.045;
 
 /// One segment of a recording, row by row.
 #[derive(Debug, Default)]
-pub(super) struct Line {
+pub(in crate::mass) struct Line {
     /// Number of the recording, and the first row of the segment in it.
     pub(super) recording: usize,
     pub(super) first_row: usize,
@@ -34,7 +34,7 @@ pub(super) struct Line {
 
 /// A knock with the rows around it.
 #[derive(Debug, Clone)]
-pub(super) struct Knock {
+pub(in crate::mass) struct Knock {
     pub(super) period_s: f64,
     /// From some time before the window, for the mount to come to rest.
     pub(super) accelerations: Vec<f64>,
@@ -49,7 +49,7 @@ pub(super) struct Knock {
 
 impl Line {
     /// Nothing yet of `n_rows` rows of recording `recording`, of which `first` is the first.
-    pub(super) fn of_rows(n_rows: usize, recording: usize, first: &Instant) -> Self {
+    pub(in crate::mass) fn of_rows(n_rows: usize, recording: usize, first: &Instant) -> Self {
         let column = || Vec::with_capacity(n_rows);
         Self {
             recording,
@@ -62,7 +62,16 @@ impl Line {
         }
     }
 
-    pub(super) fn knocks(&self, residual: Residual) -> Vec<Knock> {
+    /// One more row, where the model says `model_n`.
+    pub(in crate::mass) fn push(&mut self, instant: &Instant, model_n: f64) {
+        self.ends_s[1] = instant.moment.time_s;
+        self.accelerations.push(instant.moment.acceleration_m_per_s2);
+        self.speeds.push(instant.moment.speed_m_per_s);
+        self.knees.push(instant.knee);
+        self.residuals_n.push(instant.force_n - model_n);
+    }
+
+    pub(in crate::mass) fn knocks(&self, residual: Residual) -> Vec<Knock> {
         let (n, [first_s, last_s]) = (self.accelerations.len(), self.ends_s);
         if n < 2 {
             return Vec::new();
