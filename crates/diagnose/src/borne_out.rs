@@ -39,8 +39,8 @@ const FAINT: f64 = 6.1;
 const SHOWN: f64 = 0.5;
 
 /// Evidence within what was fitted that no chance gives, together with [`NO_CHANCE`]: hold-outs that are followed worse with a name then
-/// say that something is wrong there, and not that it is no name. Of 750 cases that were looked at, eleven right names have it that were
-/// denied so, and no wrong one; with half of the evidence twelve and none, with ten times the probability fourteen and a wrong one.
+/// say that something is wrong there, and not that it is no name. Of 1,000 cases that were looked at, twelve right names have it that were
+/// denied so, and no wrong one.
 const OVERWHELMING: f64 = 16.0;
 /// See [`OVERWHELMING`].
 const NO_CHANCE: f64 = 1e-3;

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use pam_artifact::ModelArtifact;
 use pam_artifact::diagnosis::Region;
-use pam_artifact::model::ParameterEntry;
+use pam_artifact::model::{ParameterEntry, ParameterStatus};
 use pam_identification::error::IdentifyError;
 use pam_identification::predict::walk_augmented;
 use pam_identification::prepare::Prepared;
@@ -187,8 +187,10 @@ impl MovingMass {
     /// Its parameters, as an artifact has them.
     pub fn entries(&self) -> Vec<ParameterEntry> {
         let (shape, amplitude) = (&Self::effect().shape()[0], &Self::effect().amplitudes()[0]);
+        let mount = entry(shape.name, shape.unit, self.mount_hz, shape.range, None);
         vec![
-            entry(shape.name, shape.unit, self.mount_hz, shape.range, None),
+            // What swings says nothing of the mount, which is taken to be rigid.
+            if self.knocks() { mount } else { ParameterEntry { status: ParameterStatus::Fixed, ..mount } },
             entry(amplitude.name, amplitude.unit, self.mass_kg, amplitude.range, Some(self.mass_stderr_kg)),
         ]
     }

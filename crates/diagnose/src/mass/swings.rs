@@ -271,6 +271,7 @@ mod tests {
     use super::*;
     use crate::rehearsal::tests::Given;
 
+    use pam_artifact::model::ParameterStatus;
     use std::f64::consts::TAU;
 
     const PERIOD_S: f64 = 0.005;
@@ -318,6 +319,7 @@ mod tests {
         assert!((mass.mass_kg / 1.5 - 1.0).abs() < 0.05 && mass.mass_stderr_kg < 0.05, "{mass:?}");
         assert!(mass.with.mean_square() < 0.5 * mass.without.mean_square() && !mass.knocks(), "{mass:?}");
         assert!(mass.region(1.0).is_none());
+        assert_eq!(mass.entries()[0].status, ParameterStatus::Fixed);
     }
 
     #[test]
