@@ -98,7 +98,8 @@ impl<'a> DiagnosisProblem<'a> {
         // from where it knocks, or from what is fast, than from all that is there.
         let track = track.without(&first);
         let first_look = found.first;
-        let others = self.without([mass::ID]);
+        let mut others = self.without([mass::ID]);
+        others.limits.max_effects -= 1;
         let (mut found, sizes) = others.search(&track, looked)?;
         found.first = first_look;
         let mass = first.again(self.estimation, &Self::beside_mass(&found), self.model, &sizes)?;

@@ -96,6 +96,10 @@ fn a_mass_that_swings_is_named_beside_what_is_slow_and_larger() {
     assert!((mass_kg / 6.0 - 1.0).abs() < 0.1, "{:?}", mass.parameters);
     let held = diagnosis.fit.holdout.unwrap();
     assert!(held.rmse_all_after_n < held.rmse_all_before_n, "{held:?}");
+    // It is one of those that may be named.
+    let (diagnosis, _) = desk.diagnosed(&format!("{files} --model model.json --max-effects 1 --quiet"), 1);
+    let ids: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.id.as_str()).collect();
+    assert_eq!(ids, ["inertia"]);
 }
 
 #[test]

@@ -29,8 +29,8 @@ const OUTLYING: f64 = 4.0;
 const PIECES: usize = 32;
 /// Bins that are needed in each.
 const LEAST: usize = 20;
-/// Standard errors by which a mass differs from none. Noise never gives it; of what else there is, two of 1,400 cases have more (one has
-/// more than 10, three more than 6), and of 51 masses 37 (35, 37).
+/// Standard errors by which a mass differs from none. Noise never gives it; of what else there is, two of 1,400 cases have more (none has
+/// more than 10, three have more than 6), and of 51 masses 37 (35, 37).
 const SURELY: f64 = 8.0;
 /// Share of its pull that is left of it where that is averaged like this, about.
 const KEPT: f64 = 0.6;
