@@ -27,7 +27,7 @@ fn main() {
         confirmed: false,
     };
     let question = DiagnosisProblem::new(&prepared, &model, limits);
-    let SearchOutcome { track, found, mass, sizes, .. } = question.answer(&track, &|| {}).unwrap();
+    let SearchOutcome { track, found, besides, sizes, .. } = question.answer(&track, &|| {}).unwrap();
     let setting = question.setting(&track, &found.nuisance);
     println!(
         "base {:.3} N, floor {:.3} N, sensor floor {:.3} N",
@@ -80,12 +80,12 @@ fn main() {
     if let Some(left) = &found.left {
         println!("left unnamed: {:.3} N", left.held_out.mean_square().sqrt());
     }
-    println!("mass {mass:?}");
-    let verdict = pam_diagnosis::verdict::verdict(&found, &sizes, mass.is_some());
+    println!("besides {besides:?}");
+    let verdict = pam_diagnosis::verdict::verdict(&found, &sizes, !besides.is_empty());
     let alternatives: Vec<Vec<&str>> =
         (0..found.taken.len()).map(|i| pam_diagnosis::verdict::alternatives(&found, i)).collect();
     let mut names: Vec<&str> = found.best.state.guesses.iter().map(|guess| guess.id()).collect();
-    names.extend(mass.iter().map(|_| pam_diagnosis::mass::ID));
+    names.extend(besides.ids());
     let firsts: Vec<String> = found
         .first
         .iter()

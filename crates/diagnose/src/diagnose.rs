@@ -32,11 +32,9 @@ use crate::places::regions;
 use crate::plausible::implausible;
 use crate::pooled::Pooled;
 use crate::problem::DiagnosisProblem;
-use crate::resting_step;
 use crate::rig;
 use crate::search::Limits;
 use crate::standing::{Standing, unexplained};
-use crate::track::Track;
 use crate::typical::Typical;
 use crate::uncertainty::{Uncertainty, correlated_instants};
 use crate::verdict::Sizes;
@@ -213,11 +211,12 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let question = DiagnosisProblem::new(&estimation, &model, limits);
     let held = (!holdout.is_empty()).then(|| rig::track(&holdout, &model, &rig)).transpose()?;
     let held = held.map(|held| question.without_mistaken(&held));
-    // As a mass that knocks was taken off what was fitted, one that swings is of both.
-    let swings = outcome.mass.clone().filter(|mass| !mass.knocks());
-    let held = held.map(|held| swings.iter().fold(held, Track::without));
-    let Standing { track, mut found, mass, step, mut sizes, too_short } =
-        Standing::of(&question, outcome, held.as_ref())?;
+    // A mass that swings does so in all recordings; where one knocks was looked for in the fitted ones alone.
+    let held = held.map(|held| match &outcome.besides.mass {
+        Some(mass) if !mass.knocks() => held.without(mass),
+        _ => held,
+    });
+    let Standing { track, mut found, besides, mut sizes, too_short } = Standing::of(&question, outcome, held.as_ref())?;
     let nuisance = found.nuisance.clone();
     let setting = question.setting(&track, &nuisance);
     let (as_given, direction) = (model.force_model(), model.direction);
@@ -227,7 +226,6 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     };
     let against = held.as_ref().map(|_| discover::HeldAgainst { left: &held_left, given: &as_given });
     let space = &question.space;
-    let besides: Vec<&str> = mass.iter().map(|_| mass::ID).chain(step.iter().map(|_| resting_step::ID)).collect();
     observer(steps - 1, steps);
     let (verdict, discovery) =
         discover::beside_names(&setting, &mut found, &mut sizes, &question.limits, !besides.is_empty(), against);
@@ -255,8 +253,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         state,
         found: &found,
         discovery: discovery.as_ref(),
-        mass: mass.as_ref(),
-        step: step.as_ref(),
+        besides: &besides,
         folds: &folds,
         uncertainty: &uncertainty,
         correlated,
@@ -299,23 +296,24 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         if verdict == Verdict::Consistent && (typically_misses || swings) { Verdict::Unexplained } else { verdict };
     let mut regions =
         if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &question.paths()) };
-    if let Some(region) = mass.as_ref().and_then(|mass| mass.region(sizes.mismatch_n)) {
+    if let Some(region) = besides.mass.as_ref().and_then(|mass| mass.region(sizes.mismatch_n)) {
         let at = if written.effects[0].id == mass::ID { 0 } else { regions.len() };
         regions.insert(at, region);
     }
-    regions.extend(step.as_ref().map(|step| step.region(sizes.mismatch_n, &question.paths())));
+    regions.extend(besides.step.as_ref().map(|step| step.region(sizes.mismatch_n, &question.paths())));
     let unexplained =
         if verdict == Verdict::Unexplained { unexplained(&question, &setting, &found) } else { Vec::new() };
     let isolability =
         isolability(&setting, &found.base.state, sizes.floor_n, track.n_counted() as f64 / correlated.max(1.0));
     // Where the mass is all there is to confirm.
     let confirmed = || {
-        let mass = mass.as_ref().filter(|_| verdict == Verdict::Explained)?;
+        let mass = besides.mass.as_ref().filter(|_| verdict == Verdict::Explained)?;
         confirm_mass(MovingMass::effect(), mass.mass_kg(), state, &model.domain)
     };
     let next_experiment =
         next_experiment(&setting, &found, verdict, &unexplained, &sizes, &model.domain).or_else(confirmed);
-    let (implausible, candidates) = (implausible(&setting, &found.best.state), candidates(&found, &besides));
+    let (implausible, candidates) =
+        (implausible(&setting, &found.best.state), candidates(&found, &besides.ids().collect::<Vec<&str>>()));
     let free = space.free.iter().map(|free| free.name()).collect();
     let at_bound = state.fit.at_bound[..space.free.len()].to_vec();
     let Written { mut entries, effects, empirical, kept, .. } = written;

@@ -6,6 +6,7 @@
 
 pub mod artifact;
 pub mod base;
+pub mod besides;
 mod best_law;
 mod borne_out;
 mod carried;

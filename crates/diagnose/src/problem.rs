@@ -7,6 +7,7 @@ use pam_muscle::effects::{AugmentedModel, CATALOGUE, Effect};
 use pam_muscle::force::columns::ForceColumns;
 
 use crate::base;
+use crate::besides::Besides;
 use crate::error::DiagnoseError;
 use crate::mass::{self, MovingMass};
 use crate::nuisance::{self, Nuisance};
@@ -37,14 +38,12 @@ pub struct DiagnosisProblem<'a> {
 /// What came out.
 #[derive(Debug)]
 pub struct SearchOutcome {
-    /// The recordings, without the pull of a mass that was named, and what it knocks does not count, and without a step at rest.
+    /// The recordings without what was found beside the search; where a mass knocks, nothing counts.
     pub track: Track,
     /// What the search found on it.
     pub found: Found,
-    /// A mass that moves.
-    pub mass: Option<MovingMass>,
-    /// A step of the force at rest.
-    pub(crate) step: Option<RestingStep>,
+    /// What was found beside it.
+    pub besides: Besides,
     /// Sizes that a verdict rests on.
     pub sizes: Sizes,
 }
@@ -92,7 +91,7 @@ impl<'a> DiagnosisProblem<'a> {
         let limits = &self.limits;
         let first = MovingMass::that_matters(self.estimation, &explained, self.model, limits, &sizes)?;
         let Some(first) = first else {
-            return self.beside_step(SearchOutcome { track, found, mass: None, step: None, sizes }, looked);
+            return self.beside_step(SearchOutcome { track, found, besides: Besides::default(), sizes }, looked);
         };
         // What a mass leaves on the grid would hide the rest, and would be taken for something else. The mass itself is known better
         // from where it knocks, or from what is fast, than from all that is there.
@@ -105,7 +104,8 @@ impl<'a> DiagnosisProblem<'a> {
         let mass = first.again(self.estimation, &Self::beside_mass(&found), self.model, &sizes)?;
         let sizes = sizes.with(mass.all_rows_n);
         let knocks = mass.knocks();
-        let outcome = SearchOutcome { track, found, mass: Some(mass), step: None, sizes };
+        let besides = Besides { mass: Some(mass), step: None };
+        let outcome = SearchOutcome { track, found, besides, sizes };
         if knocks { Ok(outcome) } else { others.beside_step(outcome, looked) }
     }
 
@@ -140,9 +140,9 @@ impl<'a> DiagnosisProblem<'a> {
             if left(&found) < least.min(step.may_leave(before, &named)) {
                 least = left(&found);
                 let step = step.compared(&found.best.held_out);
-                let of_mass_n = outcome.mass.as_ref().map_or(0.0, |mass| mass.all_rows_n);
-                let sizes = sizes.with(step.all_instants_n.hypot(of_mass_n));
-                best = Some(SearchOutcome { track, found, mass: outcome.mass.clone(), step: Some(step), sizes });
+                let besides = Besides { step: Some(step), ..outcome.besides.clone() };
+                let sizes = sizes.with(besides.size_n());
+                best = Some(SearchOutcome { track, found, besides, sizes });
             }
         }
         Ok(match best {

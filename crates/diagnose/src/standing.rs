@@ -3,12 +3,12 @@
 
 use pam_artifact::diagnosis::{Region, Verdict};
 
+use crate::besides::Besides;
 use crate::borne_out;
 use crate::error::DiagnoseError;
-use crate::mass::{self, MovingMass};
+use crate::mass::MovingMass;
 use crate::places::{structured, telling};
 use crate::problem::{DiagnosisProblem, SearchOutcome};
-use crate::resting_step::{self, RestingStep};
 use crate::search::Found;
 use crate::short;
 use crate::stand_ins;
@@ -24,10 +24,8 @@ pub(crate) struct Standing {
     pub(crate) track: Track,
     /// What was found, without what was let go of.
     pub(crate) found: Found,
-    /// A mass that moves; beside one that knocks nothing is let go of, as it has sizes of its own.
-    pub(crate) mass: Option<MovingMass>,
-    /// A step of the force at rest.
-    pub(crate) step: Option<RestingStep>,
+    /// What was found beside that; beside a mass that knocks nothing is let go of, as it has sizes of its own.
+    pub(crate) besides: Besides,
     /// Sizes that a verdict rests on.
     pub(crate) sizes: Sizes,
     /// What recordings were too short for, in words.
@@ -35,7 +33,7 @@ pub(crate) struct Standing {
 }
 
 impl Standing {
-    /// What stands of `outcome`, where `held` is what was held out, without the pull of a mass that was found.
+    /// What stands of `outcome`, where `held` is what was held out, without the pull of a mass that swings.
     ///
     /// # Errors
     /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit.
@@ -44,17 +42,15 @@ impl Standing {
         outcome: SearchOutcome,
         held: Option<&Track>,
     ) -> Result<Self, DiagnoseError> {
-        let SearchOutcome { track, mut found, mass, step, mut sizes } = outcome;
-        let besides_n = step.as_ref().map_or(0.0, |step| step.all_instants_n);
-        let besides_n = besides_n.hypot(mass.as_ref().map_or(0.0, |mass| mass.all_rows_n));
-        let besides = mass.iter().map(|_| mass::ID).chain(step.iter().map(|_| resting_step::ID));
-        let question = &question.without(besides);
+        let SearchOutcome { track, mut found, besides, mut sizes } = outcome;
+        let besides_n = besides.size_n();
+        let question = &question.without(besides.ids());
         let limits = &question.limits;
         let lasts_s = question.estimation.iter().map(|prepared| prepared.quality.duration_s).sum();
-        if mass.as_ref().is_some_and(MovingMass::knocks) {
+        if besides.mass.as_ref().is_some_and(MovingMass::knocks) {
             let nuisance = found.nuisance.clone();
             let too_short = short::let_go(&question.setting(&track, &nuisance), &mut found, limits, lasts_s);
-            return Ok(Self { track, found, mass, step, sizes, too_short });
+            return Ok(Self { track, found, besides, sizes, too_short });
         }
         if let Some(held) = held {
             found = veto::confirmed(question, &track, found, held)?;
@@ -74,7 +70,7 @@ impl Standing {
         if !too_short.is_empty() || is_not_borne_out {
             sizes = Sizes::of(&found, limits).with(besides_n);
         }
-        Ok(Self { track, found, mass, step, sizes, too_short })
+        Ok(Self { track, found, besides, sizes, too_short })
     }
 }
 

@@ -226,23 +226,15 @@ mod tests {
     }
 
     #[test]
-    fn a_force_that_slips_within_a_second_is_one_where_it_is_most_of_what_is_left() {
-        let (given, middle_s) = stepped(0.8);
-        let setting = given.setting();
-        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
-        let residuals_n = setting.residuals_n(&state);
-        let is_one = |gained| is_sudden(&setting, &residuals_n, &[0.0, middle_s + 0.4], 5.0, gained);
-        assert!(!is_one(0.4) && is_one(0.6));
-    }
-
-    #[test]
-    fn a_force_that_slips_within_two_seconds_is_one_where_next_to_nothing_else_is_left() {
-        let (given, middle_s) = stepped(2.0);
-        let setting = given.setting();
-        let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
-        let residuals_n = setting.residuals_n(&state);
-        let is_one = |gained| is_sudden(&setting, &residuals_n, &[0.0, middle_s + 1.0], 5.0, gained);
-        assert!(!is_one(0.6) && is_one(0.8));
+    fn a_force_that_slips_is_one_where_it_is_the_more_of_what_is_left_the_longer_it_takes() {
+        for (takes_s, too_little, enough) in [(0.8, 0.4, 0.6), (2.0, 0.6, 0.8)] {
+            let (given, middle_s) = stepped(takes_s);
+            let setting = given.setting();
+            let state = setting.fit(Vec::new(), &given.start, &given.model).expect("a fit");
+            let residuals_n = setting.residuals_n(&state);
+            let is_one = |gained| is_sudden(&setting, &residuals_n, &[0.0, middle_s + 0.5 * takes_s], 5.0, gained);
+            assert!(!is_one(too_little) && is_one(enough), "{takes_s}");
+        }
     }
 
     #[test]

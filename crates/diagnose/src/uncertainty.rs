@@ -9,6 +9,14 @@ use crate::joint::JointFit;
 use crate::state::{Setting, State};
 use crate::track::Track;
 
+/// Standard error of what `each` is with one part after the other left out, by the jackknife; of nothing, it is not a number.
+pub(crate) fn jackknife_stderr(each: impl Iterator<Item = f64> + Clone) -> f64 {
+    let n = each.clone().count() as f64;
+    let mean = each.clone().sum::<f64>() / n;
+    let squares: f64 = each.map(|value| (value - mean).powi(2)).sum();
+    ((n - 1.0) / n * squares).sqrt()
+}
+
 /// Standard errors by the jackknife over folds: base coordinates (in the unit box), then amplitudes (SI).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Uncertainty {
@@ -48,13 +56,8 @@ impl Uncertainty {
             }
         });
         let n_amplitudes = folds.first().map_or(0, |fit| fit.amplitudes.len());
-        let amplitudes = (0..n_amplitudes)
-            .map(|index| {
-                let mean = folds.iter().map(|fit| fit.amplitudes[index]).sum::<f64>() / n;
-                let squares: f64 = folds.iter().map(|fit| (fit.amplitudes[index] - mean).powi(2)).sum();
-                ((n - 1.0) / n * squares).sqrt()
-            })
-            .collect();
+        let amplitudes =
+            (0..n_amplitudes).map(|index| jackknife_stderr(folds.iter().map(|fit| fit.amplitudes[index]))).collect();
         let base = (0..n_free).map(|index| stderr(index) * (space.ranges[index].1 - space.ranges[index].0)).collect();
         Self { base, amplitudes, correlation }
     }

@@ -19,7 +19,7 @@ use crate::problem::DiagnosisProblem;
 use crate::search::Found;
 use crate::state::{Setting, State};
 use crate::track::Track;
-use crate::uncertainty::correlated_instants;
+use crate::uncertainty::{correlated_instants, jackknife_stderr};
 
 /// Share of its size that an effect must be seen with on what was held out: half way between there and not there.
 const SEEN: f64 = 0.5;
@@ -342,14 +342,11 @@ fn share(held: &Setting<'_>, state: &State, index: usize) -> Option<Share> {
             (product - piece_product) / (square - piece_square)
         })
         .collect();
-    let m = parts.len() as f64;
-    let mean = parts.iter().sum::<f64>() / m;
-    let jackknife = parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>() * (m - 1.0) / m;
     let left: Vec<f64> = without.iter().zip(&own).map(|(without, own)| without - share * own).collect();
     let variance = counted.iter().map(|&at| left[at].powi(2)).sum::<f64>() / counted.len().max(1) as f64;
     // No residual is known better than the sensors.
     let plain = correlated_instants(held, &left) * variance.max(held.floor_square) / square;
-    let error = jackknife.max(plain).sqrt();
+    let error = jackknife_stderr(parts.iter().copied()).max(plain.sqrt());
     let seen = (share.is_finite() && error.is_finite()).then_some(Share { value: share, error })?;
     // What is less than half as large as the noise of the sensors may be seen all the same, but not be missed: any misfit hides it.
     let is_small = square < 0.25 * held.floor_square * counted.len() as f64;

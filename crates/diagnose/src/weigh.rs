@@ -114,8 +114,8 @@ impl Diagnosis {
 
     /// Whether recordings that nothing was fitted to are followed so well, over all samples, that what is left of the fitted ones
     /// without a name, and without a term that models it, does not matter. A smooth static map belongs to any muscle's model, as far
-    /// as the form of eq. 11 accounts for it. A fitted
-    /// recording that is missed by far matters all the same: hold-outs do not show what is wrong with it.
+    /// as the form of eq. 11 accounts for it. A fitted recording that is missed by far matters all the same: hold-outs do not show
+    /// what is wrong with it.
     fn is_followed(&self, agreement: &Agreement) -> bool {
         let as_written = self.sizes.static_n.is_none().then_some(&agreement.holdout);
         let held = as_written.unwrap_or(&agreement.base_holdout).together.as_ref();

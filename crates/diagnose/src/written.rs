@@ -7,14 +7,13 @@ use pam_muscle::effects::sentence::Sentence;
 use pam_muscle::effects::{AugmentedModel, Kind, Term};
 use pam_muscle::force::ForceModel;
 
+use crate::besides::Besides;
 use crate::discover::{Discovery, HeldAgainst};
 use crate::elsewhere::{KeptToFitted, keep_to_fitted};
 use crate::joint::JointFit;
-use crate::mass::MovingMass;
-use crate::named::{map_entry, moving, named, term_entry};
+use crate::named::{map_entry, named, term_entry};
 use crate::nuisance;
 use crate::own;
-use crate::resting_step::RestingStep;
 use crate::search::Found;
 use crate::state::{Setting, State};
 use crate::uncertainty::{self, Uncertainty};
@@ -29,10 +28,8 @@ pub(crate) struct Fit<'a> {
     pub(crate) found: &'a Found,
     /// Terms without a name beside it.
     pub(crate) discovery: Option<&'a Discovery>,
-    /// A mass that moves.
-    pub(crate) mass: Option<&'a MovingMass>,
-    /// A step of the force at rest.
-    pub(crate) step: Option<&'a RestingStep>,
+    /// What was found beside the search.
+    pub(crate) besides: &'a Besides,
     /// The same fit with each fold left out.
     pub(crate) folds: &'a [JointFit],
     /// Standard errors.
@@ -46,7 +43,7 @@ impl Fit<'_> {
     /// determine them.
     fn names_beside(&self, base: &ForceModel, sentences: &[Option<Sentence>]) -> Option<Vec<Term>> {
         let guesses = &self.state.guesses;
-        if self.discovery.is_some() || self.mass.is_some() || self.step.is_some() {
+        if self.discovery.is_some() || !self.besides.is_empty() {
             return None;
         }
         if guesses.is_empty() {
@@ -81,10 +78,10 @@ pub(crate) struct Written {
 impl Written {
     /// All that was fitted, in every recording.
     pub(crate) fn of(fit: &Fit<'_>) -> Self {
-        let Fit { setting, state, found, discovery, mass, step, folds, .. } = *fit;
+        let Fit { setting, state, found, discovery, besides, folds, .. } = *fit;
         let sentences = own::sentences(setting, state);
-        let besides = mass.map(moving).into_iter().chain(step.map(RestingStep::named)).collect();
-        let (effects, mut entries) = named(setting, found, state, fit.uncertainty, fit.correlated, &sentences, besides);
+        let (effects, mut entries) =
+            named(setting, found, state, fit.uncertainty, fit.correlated, &sentences, besides.named());
         let mut terms = own::terms(state.terms(), &sentences);
         let empirical = discovery.map(|discovery| discovery.written(setting, found, folds));
         entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
@@ -93,8 +90,7 @@ impl Written {
             terms.push(map);
         }
         terms.extend(discovery.iter().flat_map(|discovery| discovery.terms()));
-        terms.extend(mass.map(MovingMass::term));
-        terms.extend(step.map(RestingStep::term));
+        terms.extend(besides.terms());
         Self { base: state.model.clone(), terms, entries, effects, empirical, kept: None, sentences }
     }
 

@@ -5,6 +5,7 @@ use pam_muscle::effects::Sentence;
 use pam_muscle::effects::sentence::Argument;
 
 use crate::state::{Setting, State};
+use crate::uncertainty::jackknife_stderr;
 
 /// Points of a curve.
 const POINTS: usize = 121;
@@ -46,12 +47,7 @@ pub(super) fn curve(
     };
     let force_n = along(amplitudes);
     let each: Vec<Vec<f64>> = folds.iter().map(|amplitudes| along(amplitudes)).collect();
-    let half = |at: usize| {
-        let m = each.len() as f64;
-        let mean = each.iter().map(|curve| curve[at]).sum::<f64>() / m;
-        let squares: f64 = each.iter().map(|curve| (curve[at] - mean).powi(2)).sum();
-        STANDARD_ERRORS * ((m - 1.0) / m * squares).sqrt()
-    };
+    let half = |at: usize| STANDARD_ERRORS * jackknife_stderr(each.iter().map(|curve| curve[at]));
     let band: Vec<f64> = (0..POINTS).map(|at| if each.is_empty() { 0.0 } else { half(at) }).collect();
     EmpiricalCurve {
         unit: sentence.memory.unit(&sentence.driver).to_owned(),

@@ -11,7 +11,7 @@ use crate::joint::JointFit;
 use crate::named::evidence;
 use crate::search::Found;
 use crate::state::Setting;
-use crate::uncertainty::entry;
+use crate::uncertainty::{entry, jackknife_stderr};
 
 impl Discovery {
     /// What a diagnosis writes of the terms; `folds` each leave one fold out.
@@ -45,12 +45,7 @@ impl Discovery {
 
 /// Amplitudes of a term, with standard errors by the jackknife over folds.
 fn parameters(term: &Term, folds: &[Vec<f64>]) -> Vec<ParameterEntry> {
-    let n = folds.len() as f64;
-    let stderr = |index: usize| {
-        let mean = folds.iter().map(|fold| fold[index]).sum::<f64>() / n;
-        let squares: f64 = folds.iter().map(|fold| (fold[index] - mean).powi(2)).sum();
-        ((n - 1.0) / n * squares).sqrt()
-    };
+    let stderr = |index: usize| jackknife_stderr(folds.iter().map(|fold| fold[index]));
     let values = term.effect.amplitudes().iter().zip(&term.amplitudes).enumerate();
     values
         .map(|(index, (amplitude, &value))| {

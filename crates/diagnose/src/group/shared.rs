@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::member::{Estimate, Member, Worth};
 use crate::hypothesis::{Beginning, CandidateEffect};
 use crate::trial::step_around;
+use crate::uncertainty::jackknife_stderr;
 
 /// Shapes of the grid that are refined, the best of those whose first differs: where friction turns over with a channel that is late, there is more than one
 /// delay that is better than its neighbors.
@@ -207,12 +208,8 @@ pub(super) fn spread(members: &[&Member<'_>], guess: &CandidateEffect) -> Vec<f6
         Some(descended(guess.clone(), followed, POLISH, POLISH_ROUNDS, &gains).shape)
     };
     let shapes: Vec<Vec<f64>> = (0..members.len()).filter_map(left_out).collect();
-    let n = shapes.len().max(1) as f64;
-    let square = |index: usize| {
-        let mean = shapes.iter().map(|shape| shape[index]).sum::<f64>() / n;
-        shapes.iter().map(|shape| (shape[index] - mean).powi(2)).sum::<f64>() * (n - 1.0) / n
-    };
-    (0..guess.shape.len()).map(|index| square(index).sqrt()).collect()
+    let spread = |index: usize| jackknife_stderr(shapes.iter().map(|shape| shape[index]));
+    (0..guess.shape.len()).map(|index| if shapes.is_empty() { 0.0 } else { spread(index) }).collect()
 }
 
 /// The value that `member` has for itself, where it gains clearly more than the shared one does.

@@ -10,6 +10,7 @@ mod line;
 use crate::joint::HeldOut;
 use crate::search::chance;
 use crate::track::FOLDS;
+use crate::uncertainty::jackknife_stderr;
 use crate::verdict::Sizes;
 
 use super::{Motion, MovingMass};
@@ -74,9 +75,6 @@ fn fitted(knocks: &[Knock], n_rows: usize, floor_n: f64, residual: Residual) -> 
     let (mount_hz, sums) = mounted(knocks, residual);
     let rest = |fold: usize| sums.iter().enumerate().filter(move |(index, _)| index % FOLDS != fold);
     let others: Vec<f64> = (0..FOLDS).map(|fold| Sums::total(rest(fold).map(|(_, sums)| sums)).slope()).collect();
-    let mean = others.iter().sum::<f64>() / FOLDS as f64;
-    let n = FOLDS as f64;
-    let variance = (n - 1.0) / n * others.iter().map(|slope| (slope - mean).powi(2)).sum::<f64>();
     let counts: Vec<f64> = sums.iter().map(|sums| sums.rows).collect();
     let without = HeldOut {
         blocks: sums.iter().map(|sums| sums.yy / sums.rows).collect(),
@@ -101,7 +99,7 @@ fn fitted(knocks: &[Knock], n_rows: usize, floor_n: f64, residual: Residual) -> 
     speeds.sort_by(f64::total_cmp);
     believed.then(|| MovingMass {
         mass_kg,
-        mass_stderr_kg: variance.sqrt(),
+        mass_stderr_kg: jackknife_stderr(others.iter().copied()),
         mount_hz,
         all_rows_n: (explained * Sums::total(&sums).rows / n_rows.max(1) as f64).sqrt(),
         without,

@@ -14,6 +14,7 @@ use pam_muscle::motion::Instant;
 use super::{Motion, MovingMass};
 use crate::joint::HeldOut;
 use crate::track::FOLDS;
+use crate::uncertainty::jackknife_stderr;
 use crate::verdict::Sizes;
 
 /// Time between two bins that rows are averaged in, in s.
@@ -244,9 +245,6 @@ fn fitted(stretches: &[Stretch]) -> Option<MovingMass> {
     };
     let mass_kg = |sums: &Sums| Some(sums.solved(true)?[CLEARED] / scales[CLEARED]);
     let others: Option<Vec<f64>> = (0..pieces.len()).map(|out| mass_kg(&total(&|at| at != out))).collect();
-    let (others, n) = (others?, pieces.len() as f64);
-    let mean = others.iter().sum::<f64>() / n;
-    let variance = others.iter().map(|other| (other - mean).powi(2)).sum::<f64>() * (n - 1.0) / n;
     let left = |with_mass: bool| -> Option<HeldOut> {
         let folds: Option<Vec<_>> = (0..FOLDS).map(|fold| total(&|at| at % FOLDS != fold).solved(with_mass)).collect();
         let folds = folds?;
@@ -256,7 +254,7 @@ fn fitted(stretches: &[Stretch]) -> Option<MovingMass> {
     let mass_kg = mass_kg(&total(&|_| true))?;
     Some(MovingMass {
         mass_kg,
-        mass_stderr_kg: variance.sqrt(),
+        mass_stderr_kg: jackknife_stderr(others?.into_iter()),
         // What is averaged over so long says nothing of a mount.
         mount_hz: MovingMass::effect().shape()[0].range.1,
         without: left(false)?,
