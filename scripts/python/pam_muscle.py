@@ -560,8 +560,22 @@ class FatigueWear:
         return (friction_n - base.gas_n * self.values["loss_per_reference_travel"]) * worn
 
 
+class EndStretch:
+    """Ends that grow a little longer as they are pulled, without a name in physics."""
+
+    uses_slopes = True
+
+    def __init__(self, values, eq11):
+        self.stretch_m_per_n = values["stretch_m_per_n"]
+
+    def pulls(self, now, base):
+        return -base.static_n * base.slope_n_per_m * self.stretch_m_per_n
+
+
 class StaticMap:
-    """What is left of a static force, without a name in physics: Legendre polynomials in pressure and contraction."""
+    """What is left of a static force, without a name in physics: Legendre polynomials in pressure and contraction as recorded."""
+
+    pulls_as_recorded = True
 
     def __init__(self, values, eq11):
         self.values = values
@@ -742,6 +756,7 @@ EFFECTS = {
     "mullins-softening": MullinsSoftening,
     "thermal-softening": ThermalSoftening,
     "fatigue-wear": FatigueWear,
+    "end-stretch": EndStretch,
     "static-map": StaticMap,
 }
 
@@ -774,7 +789,7 @@ class Memory:
             base.slope_n_per_m = (longer.static_n - shorter.static_n) / 2e-5
         force_n = base.static_n - slide * base.friction_n
         for effect in self.having("pulls"):
-            force_n += effect.pulls(now, base)
+            force_n += effect.pulls(moment if getattr(effect, "pulls_as_recorded", False) else now, base)
         for effect in self.having("reads"):
             force_n = effect.reads(force_n)
         return float(force_n)

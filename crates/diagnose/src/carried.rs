@@ -68,8 +68,8 @@ fn fitted(
 
 /// The model of `state` with what it carries of `nuisance`.
 pub(crate) fn carried(setting: &Setting<'_>, found: &Found, state: &State, nuisance: &Nuisance) -> AugmentedModel {
-    let map = nuisance.map_term(&state.fit.nuisances, setting.track, &found.coordinates);
-    AugmentedModel::new(state.model.clone(), state.terms().into_iter().chain(map).collect())
+    let beside = nuisance.carried(&state.fit.nuisances, setting.track, &found.coordinates);
+    AugmentedModel::new(state.model.clone(), state.terms().into_iter().chain(beside).collect())
 }
 
 #[cfg(test)]

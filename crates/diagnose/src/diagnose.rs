@@ -27,13 +27,14 @@ use crate::isolability::isolability;
 use crate::mass::{self, MovingMass};
 use crate::named::candidates;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
+use crate::nuisance::ENDS_ID;
 use crate::periodic;
 use crate::places::regions;
 use crate::plausible::implausible;
 use crate::pooled::Pooled;
 use crate::problem::DiagnosisProblem;
 use crate::rig;
-use crate::search::Limits;
+use crate::search::{Limits, ends};
 use crate::standing::{Standing, unexplained};
 use crate::typical::Typical;
 use crate::uncertainty::{Uncertainty, correlated_instants};
@@ -320,6 +321,9 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let kept_to_fitted = kept.map(|kept| KeptToFitted { everywhere: rig::beside(&rig, &kept.everywhere), ..kept });
     entries.splice(0..0, rig.iter().map(rig::entry));
     let (estimation, holdout) = (begun, holdout_begun);
+    let mut noticed = check::noticed(&estimation, &holdout, &found.base.state.model, &model)?;
+    let has_ends = entries.iter().any(|entry| entry.id == ENDS_ID);
+    noticed.extend(has_ends.then(|| ends::words(&whole, state)).flatten());
     let (base, base_fitted) = better_base(&estimation, &model, &found.base.state.model)?;
     let diagnosis = Diagnosis {
         verdict,
@@ -331,7 +335,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         empirical,
         without_terms,
         too_short,
-        noticed: check::noticed(&estimation, &holdout, &found.base.state.model, &model)?,
+        noticed,
         unexplained_share: sizes.share_left(),
         unexplained,
         implausible,

@@ -7,23 +7,22 @@ use pam_muscle::effects::{Effect, Sentence, Term};
 use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
 use crate::mass::MovingMass;
-use crate::nuisance::MAP_ID;
 use crate::own;
 use crate::search::{Found, chance};
 use crate::state::{Setting, State};
 use crate::uncertainty::{Uncertainty, entries, shape_errors};
 use crate::verdict::alternatives;
 
-/// The static map as a model artifact has it; its terms have no standard errors of their own.
-pub(crate) fn map_entry(map: &Term) -> EffectEntry {
-    let shapes = map.effect.shape().iter().map(|shape| (shape.name, shape.unit));
-    let amplitudes = map.effect.amplitudes().iter().map(|amplitude| (amplitude.name, amplitude.unit));
+/// A static map or a stretch of the ends as a model artifact has it; they have no standard errors of their own.
+pub(crate) fn nameless_entry(term: &Term) -> EffectEntry {
+    let shapes = term.effect.shape().iter().map(|shape| (shape.name, shape.unit));
+    let amplitudes = term.effect.amplitudes().iter().map(|amplitude| (amplitude.name, amplitude.unit));
     let parameters =
-        shapes.chain(amplitudes).zip(map.shape.iter().chain(&map.amplitudes)).map(|((name, unit), &value)| {
+        shapes.chain(amplitudes).zip(term.shape.iter().chain(&term.amplitudes)).map(|((name, unit), &value)| {
             let status = ParameterStatus::Fitted;
             ParameterEntry { name: name.to_owned(), value, unit: unit.to_owned(), stderr: None, status }
         });
-    EffectEntry::new(MAP_ID, parameters.collect())
+    EffectEntry::new(term.effect.page().id, parameters.collect())
 }
 
 /// A term without a name as a model artifact has it.

@@ -4,6 +4,7 @@
 //! |----------------|--------------------------------------------------------------------------------------|
 //! | static map     | products of Legendre polynomials in pressure and contraction, and the same times the direction of friction: what caliper, rubber and the form of eq. 11 leave of a smooth static force |
 //! | tare           | one constant per recording                                                           |
+//! | ends           | what a muscle grows longer by as it pulls, since it is clamped at its ends             |
 //! | reversal       | friction within a tenth of a millimetre after each reversal: no strand turns over at once, and no length sensor tells when |
 //! | beginning      | what a named effect with a lasting memory keeps of what went before every recording |
 //! | term           | values of the curve of a term without a name                                         |
@@ -19,7 +20,7 @@ use std::sync::{Arc, LazyLock};
 use nalgebra::DMatrix;
 use pam_muscle::Coordinate;
 use pam_muscle::effects::static_map::{self, EVEN_DEGREE, ODD_DEGREE, legendre, scaled};
-use pam_muscle::effects::{Moment, Term, effect};
+use pam_muscle::effects::{Base, Moment, Term, effect, end_stretch};
 use pam_muscle::force::ForceModel;
 use pam_muscle::force::rubber_friction::normal_force_n;
 use rayon::prelude::*;
@@ -39,6 +40,8 @@ pub enum Group {
     EvenMap,
     /// The same, with the sign of friction.
     OddMap,
+    /// A muscle that is clamped at its ends.
+    Ends,
     /// A constant per recording.
     Tare,
     /// Friction that turns over a little later than the length.
@@ -72,6 +75,9 @@ pub static NONE: LazyLock<Nuisance> = LazyLock::new(Nuisance::default);
 
 /// Id of the static map in models.
 pub const MAP_ID: &str = "static-map";
+
+/// Id of the stretch of the ends in models.
+pub const ENDS_ID: &str = "end-stretch";
 
 /// What the static map is a function of.
 const MAPPED: [Coordinate; 2] = [Coordinate::Pressure, Coordinate::Contraction];
@@ -177,6 +183,28 @@ impl Nuisance {
             direction * normal_n * (-travel_m / TURN_M).exp()
         });
         self.with(Group::Reversal, vec![column.collect()], &track.counted, LOOSE)
+    }
+
+    /// The same with a stretch of the ends, beside the force of `model`.
+    #[must_use]
+    pub(crate) fn with_ends(&self, track: &Track, model: &ForceModel) -> Self {
+        let column = track.instants.par_iter().map(|instant| {
+            end_stretch::per_m_per_n(&Base::of(model, instant.moment.pressure_pa, instant.moment.length_m))
+        });
+        self.with(Group::Ends, vec![column.collect()], &track.counted, LOOSE)
+    }
+
+    /// The stretch of the ends with `coefficients`, in m/N; none where there is none.
+    pub(crate) fn stretch_m_per_n(&self, coefficients: &[f64]) -> Option<f64> {
+        let (_, columns) = self.groups.iter().find(|(group, _)| *group == Group::Ends)?;
+        Some(self.in_their_units(coefficients, columns.clone())[0])
+    }
+
+    /// What of it a model carries, with `coefficients`: the stretch of the ends and the static map, as far as they are in.
+    pub fn carried(&self, coefficients: &[f64], track: &Track, coordinates: &Coordinates) -> Vec<Term> {
+        let ends = self.stretch_m_per_n(coefficients).zip(effect(ENDS_ID));
+        let ends = ends.map(|(stretch_m_per_n, effect)| Term::new(effect, Vec::new(), vec![stretch_m_per_n]));
+        ends.into_iter().chain(self.map_term(coefficients, track, coordinates)).collect()
     }
 
     /// The same with a smooth static map.
@@ -312,7 +340,7 @@ impl Nuisance {
     }
 
     /// The static map with `coefficients` as a model carries it; none where there is no map.
-    pub fn map_term(&self, coefficients: &[f64], track: &Track, coordinates: &Coordinates) -> Option<Term> {
+    pub(crate) fn map_term(&self, coefficients: &[f64], track: &Track, coordinates: &Coordinates) -> Option<Term> {
         let columns =
             |wanted: Group| self.groups.iter().find(|(group, _)| *group == wanted).map(|(_, columns)| columns);
         let even = columns(Group::EvenMap)?;

@@ -239,8 +239,8 @@ fn foretold(setting: &Setting<'_>, held: &Track, found: &Found, index: usize) ->
     let without = setting.fit_without(with, index)?;
     // Beside the static map, or a misfit of eq. 11 would decide.
     let left = |state: &State| {
-        let map = setting.nuisance.map_term(&state.fit.nuisances, setting.track, &found.coordinates);
-        Left::of(&AugmentedModel::new(state.model.clone(), state.terms().into_iter().chain(map).collect()), held)
+        let beside = setting.nuisance.carried(&state.fit.nuisances, setting.track, &found.coordinates);
+        Left::of(&AugmentedModel::new(state.model.clone(), state.terms().into_iter().chain(beside).collect()), held)
     };
     let (with, without) = (left(with), left(&without));
     let value = match (without.is_surely_bettered_by(&with), with.is_surely_bettered_by(&without)) {

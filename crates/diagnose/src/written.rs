@@ -11,7 +11,7 @@ use crate::besides::Besides;
 use crate::discover::{Discovery, HeldAgainst};
 use crate::elsewhere::{KeptToFitted, keep_to_fitted};
 use crate::joint::JointFit;
-use crate::named::{map_entry, named, term_entry};
+use crate::named::{named, nameless_entry, term_entry};
 use crate::nuisance;
 use crate::own;
 use crate::search::Found;
@@ -85,10 +85,9 @@ impl Written {
         let mut terms = own::terms(state.terms(), &sentences);
         let empirical = discovery.map(|discovery| discovery.written(setting, found, folds));
         entries.extend(empirical.iter().flat_map(|empirical| &empirical.terms).map(term_entry));
-        if let Some(map) = setting.nuisance.map_term(&state.fit.nuisances, setting.track, &found.coordinates) {
-            entries.push(map_entry(&map));
-            terms.push(map);
-        }
+        let nameless = setting.nuisance.carried(&state.fit.nuisances, setting.track, &found.coordinates);
+        entries.extend(nameless.iter().map(nameless_entry));
+        terms.extend(nameless);
         terms.extend(discovery.iter().flat_map(|discovery| discovery.terms()));
         terms.extend(besides.terms());
         Self { base: state.model.clone(), terms, entries, effects, empirical, kept: None, sentences }

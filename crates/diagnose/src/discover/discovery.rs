@@ -81,7 +81,7 @@ impl Step {
     fn model(&self, found: &Found, track: &Track) -> AugmentedModel {
         let state = &self.best.state;
         let mut terms = state.terms();
-        terms.extend(self.nuisance.map_term(&state.fit.nuisances, track, &found.coordinates));
+        terms.extend(self.nuisance.carried(&state.fit.nuisances, track, &found.coordinates));
         terms.extend(joined::terms(&self.sentences(), &self.nuisance, state));
         AugmentedModel::new(state.model.clone(), terms)
     }

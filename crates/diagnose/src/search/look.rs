@@ -2,6 +2,7 @@
 
 use pam_muscle::effects::{Effect, Role, Seen};
 
+use super::ends::{self, Ends};
 use super::settle::settle;
 use super::worth::LEAST_LOG_RATIO;
 use super::{Judged, Limits, again};
@@ -44,6 +45,17 @@ pub(super) fn form_square(sensors_n: f64, range_n: f64, share: f64) -> f64 {
     (FORM * sensors_n.powi(2)).max((share * range_n).powi(2))
 }
 
+/// Share of what the static map takes up that a fixture must take up where the muscle grows by more than its ends can: beside the
+/// fixture, what eq. 11 misses of any muscle is there as well.
+const OF_THE_FIXTURE: f64 = 0.5;
+/// Evidence that the same needs.
+const FIXTURE_LOG_RATIO: f64 = 8.0;
+
+/// What matters of a static map, in N², where no model gets below `floor_square`.
+fn matters(limits: &Limits, floor_square: f64) -> f64 {
+    limits.matters_above_n.map_or(floor_square + limits.sensor_floor_n.powi(2), |limit_n| limit_n * limit_n)
+}
+
 /// What a static map must take up, in N², before a static effect is named in its place.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
@@ -56,8 +68,7 @@ struct Asked {
 impl Asked {
     /// Where the force ranges over `range_n`, and no model gets below `floor_square`.
     fn of(limits: &Limits, floor_square: f64, range_n: f64) -> Self {
-        let full_floor = floor_square + limits.sensor_floor_n.powi(2);
-        let matters = limits.matters_above_n.map_or(full_floor, |limit_n| limit_n * limit_n);
+        let matters = matters(limits, floor_square);
         let [form, most] = [FORM_SHARE, FORM_AT_MOST].map(|share| form_square(limits.sensor_floor_n, range_n, share));
         Self { least: matters.max(form), most }
     }
@@ -175,27 +186,56 @@ impl Look<'_> {
         again(&self.plain.beside(&even), &named)
     }
 
-    /// `best` with the static effect that stands for the static map, if there is one.
-    pub(super) fn static_effect(&self, best: &Judged, base: &Judged, floor_square: f64) -> Option<Judged> {
+    /// What is left of `best` beside forms of what was named, without a static map, and by how much the map lowers that, in N².
+    fn beside_forms(&self, best: &Judged) -> Option<(Nuisance, Judged, f64)> {
         // What is left of an effect that was named is none of the map's.
         let forms = Forms::of(self.mapped, &best.state, self.coordinates);
         let [formed, formed_map] =
             [self.plain, self.mapped].map(|setting| forms.beside(setting.nuisance, &setting.track.counted));
-        let (beside, beside_map) = (self.plain.beside(&formed), self.plain.beside(&formed_map));
-        let (bare, with_map) = (again(&beside, best)?, again(&beside_map, best)?);
+        let (bare, with_map) =
+            (again(&self.plain.beside(&formed), best)?, again(&self.plain.beside(&formed_map), best)?);
         let map = bare.held_out.mean_square() - with_map.held_out.mean_square();
+        Some((formed, bare, map))
+    }
+
+    /// Trials of static effects beside `bare`, the same in both directions; best first.
+    fn statics(&self, beside: &Setting<'_>, bare: &Judged) -> Vec<Trial> {
+        let takes = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static() && !effect.is_odd();
+        trial::among(beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &takes)
+    }
+
+    /// `best` with a fixture that gives, where beside what was named the muscle grows longer under force by more than its ends can.
+    pub(super) fn fixture(&self, best: &Judged, floor_square: f64) -> Option<Judged> {
+        let (formed, bare, map) = self.beside_forms(best)?;
+        let beside = self.plain.beside(&formed);
+        if map < matters(self.limits, floor_square) || !matches!(Ends::of(&beside, &bare, self.seen), Ends::Exceeded) {
+            return None;
+        }
+        let trials = self.statics(&beside, &bare);
+        // The ends taper beside a fixture that gives as well.
+        let others = trials.iter().filter(|trial| ![ends::FIXTURE_ID, ends::TAPER_ID].contains(&trial.guess.id()));
+        let rival_ratio = RIVAL * others.map(|trial| trial.log_ratio).fold(0.0, f64::max);
+        let fixture = trials.iter().find(|trial| trial.guess.id() == ends::FIXTURE_ID)?;
+        let gained = bare.held_out.mean_square() - fixture.held_out.mean_square();
+        let stands = gained > OF_THE_FIXTURE * map && fixture.log_ratio > FIXTURE_LOG_RATIO.max(rival_ratio);
+        stands.then(|| again(self.mapped, &settle(&beside, &bare, fixture)?)).flatten()
+    }
+
+    /// `best` with the static effect that stands for the static map, if there is one; no fixture, which gives by more than ends do or
+    /// not at all.
+    pub(super) fn static_effect(&self, best: &Judged, base: &Judged, floor_square: f64) -> Option<Judged> {
+        let (formed, bare, map) = self.beside_forms(best)?;
+        let beside = self.plain.beside(&formed);
         let (low_n, high_n) = self.seen.force_n;
         let asked = Asked::of(self.limits, floor_square, high_n - low_n);
         if map < asked.least {
             return None;
         }
-        let statics = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static() && !effect.is_odd();
-        let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &statics);
+        let mut trials = self.statics(&beside, &bare);
+        trials.retain(|trial| trial.guess.id() != ends::FIXTURE_ID);
         let best_ratio = trials.first().map_or(0.0, |trial| trial.log_ratio);
-        let stands = |trial: &&Trial| {
-            let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
-            stands_for_map(gained, map, trial.log_ratio, best_ratio)
-        };
+        let gained = |trial: &Trial| bare.held_out.mean_square() - trial.held_out.mean_square();
+        let stands = |trial: &&Trial| stands_for_map(gained(trial), map, trial.log_ratio, best_ratio);
         let named: Vec<(bool, Judged)> = trials
             .iter()
             .filter(stands)

@@ -4,6 +4,7 @@
 //! [`mod@worth`] what a trial must gain, [`mod@settle`] how what was taken settles with what was there.
 
 mod beside;
+pub(crate) mod ends;
 mod forward;
 mod look;
 mod settle;
@@ -23,6 +24,7 @@ use crate::trial::{Shapes, Trial};
 
 use beside::kept_map;
 pub(crate) use beside::{Beside, fitting};
+use ends::Ends;
 use forward::{ForwardSelection, Selected};
 use look::{FORM_AT_MOST, Look, form_square};
 use settle::{at_rest, polished, unless_suspected, without};
@@ -166,6 +168,13 @@ pub fn search(
         Nuisance::of_recordings(track, limits.sensor_floor_n).with_reversals(track, &coordinates, model);
     let bare = setting.beside(&of_recordings);
     let base = judged(&bare, bare.fit(Vec::new(), start, model)?)?;
+    let seen = track.seen();
+    let ends = Ends::of(&bare, &base, &seen);
+    let ends_stretch = matches!(ends, Ends::Stretch(..));
+    let (of_recordings, base) = match ends {
+        Ends::Stretch(nuisance, stretched) => (nuisance, *stretched),
+        Ends::Exceeded | Ends::Unseen => (of_recordings, base),
+    };
     let beside = Beside::of(setting, &of_recordings, &coordinates, &base)?;
     let best = again(&setting.beside(&beside.smooth), &base)?;
     let (remainder, telling_n) = {
@@ -176,7 +185,6 @@ pub fn search(
     };
     coordinates.replace(Coordinate::Force, telling_n);
     let features = features(setting, &coordinates);
-    let seen = track.seen();
     let every: Vec<&Feature> = features.iter().collect();
     let unnamed = remainder.structure(&every);
     let mut floor_square = best.held_out.mean_square();
@@ -218,6 +226,13 @@ pub fn search(
     let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
     let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
     let mut parsimonious = Vec::new();
+    if !ends_stretch
+        && best.state.guesses.len() < limits.max_effects
+        && let Some(next) = look.fixture(&best, floor_square)
+    {
+        parsimonious.push(ends::FIXTURE_ID);
+        best = next;
+    }
     while best.state.guesses.len() < limits.max_effects {
         let Some(next) = look.static_effect(&best, &base, floor_square) else { break };
         parsimonious.push(next.state.guesses[next.state.guesses.len() - 1].id());

@@ -208,7 +208,7 @@ fn a_static_map_is_seen_among_what_is_written() {
             vec![0.0, 5e5, 0.0, 0.2],
             Vec::new(),
         );
-        found.entries.push(crate::named::map_entry(&map));
+        found.entries.push(crate::named::nameless_entry(&map));
     });
     assert!(with_map.has_map());
     let with_another = weighed(|found, _| {

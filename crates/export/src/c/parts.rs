@@ -64,8 +64,10 @@ pub(super) struct Part {
 enum Argument {
     /// Its memory.
     Memory,
-    /// The instant.
+    /// The instant, as the muscle sees it.
     Now,
+    /// The instant, as it is recorded.
+    Moment,
     /// Eq. 11 there.
     Base,
     /// The force so far.
@@ -79,6 +81,7 @@ impl Argument {
         Some(match name {
             "memory" => Self::Memory,
             "now" => Self::Now,
+            "moment" => Self::Moment,
             "base" => Self::Base,
             "force_n" => Self::Force,
             _ => return None,
@@ -136,6 +139,7 @@ impl Part {
             .map(|argument| match argument {
                 Argument::Memory => format!("&state->{name}"),
                 Argument::Now => "&now".to_owned(),
+                Argument::Moment => "moment".to_owned(),
                 Argument::Base => "&base".to_owned(),
                 Argument::Force => "force_n".to_owned(),
             })

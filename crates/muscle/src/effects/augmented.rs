@@ -245,6 +245,7 @@ impl AugmentedModel {
 impl AugmentedMemory {
     /// Force, in N, as the load cell reads it; `model` is the one that the memory was started from.
     pub fn force_n(&mut self, model: &AugmentedModel, mut now: Moment) -> f64 {
+        let recorded = now;
         for memory in &mut self.memories {
             memory.sees(&mut now);
         }
@@ -265,7 +266,8 @@ impl AugmentedMemory {
             for (term, memory) in model.terms.iter().zip(&mut self.memories) {
                 let columns = &mut self.columns[..term.amplitudes.len()];
                 if !columns.is_empty() {
-                    memory.pulls(&now, &base, columns);
+                    let as_recorded = term.effect.pulls_as_recorded();
+                    memory.pulls(if as_recorded { &recorded } else { &now }, &base, columns);
                     let pull_n =
                         columns.iter().zip(&term.amplitudes).map(|(column, value)| column * value).sum::<f64>();
                     // A cell that was knocked reads more of a slack muscle as well.

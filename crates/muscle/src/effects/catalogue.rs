@@ -4,6 +4,7 @@
 
 mod braid_lockup;
 mod channel_delay;
+pub mod end_stretch;
 mod end_taper;
 mod fatigue_wear;
 mod force_drift;
@@ -57,7 +58,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
 ];
 
 /// Parts that a model may carry beside eq. 11 without a name in physics; a diagnosis never names it.
-pub static NAMELESS: &[&dyn Effect] = &[&static_map::StaticMap];
+pub static NAMELESS: &[&dyn Effect] = &[&static_map::StaticMap, &end_stretch::EndStretch];
 
 /// The effect with an id of the catalogue, or of what has no name.
 pub fn effect(id: &str) -> Option<&'static dyn Effect> {

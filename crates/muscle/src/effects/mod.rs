@@ -25,7 +25,7 @@ mod lag;
 mod prony;
 
 pub use augmented::{AugmentedMemory, AugmentedModel, Past, Term};
-pub use catalogue::{CATALOGUE, Mount, NAMELESS, effect, static_map};
+pub use catalogue::{CATALOGUE, Mount, NAMELESS, effect, end_stretch, static_map};
 pub use moment::{Base, Moment};
 pub use page::{Dependence, Kind, Page, Role, Symbol, Typical};
 pub use sentence::Sentence;
@@ -174,6 +174,11 @@ pub trait Effect: Sync {
     /// Whether what it has changed stays: it comes to its end, and recordings after that show nothing of it.
     fn is_permanent(&self) -> bool {
         !self.keeps().is_empty()
+    }
+
+    /// Whether its pull goes with pressure and length as recorded, whatever the muscle sees of them.
+    fn pulls_as_recorded(&self) -> bool {
+        false
     }
 
     /// Whether its pull needs the slopes of [`Base`], which cost four more evaluations of eq. 11.

@@ -65,6 +65,11 @@ impl Desk {
     fn of_the_map(&self) -> Option<&'static str> {
         self.look(|look, base| Some(look.static_effect(base, base, 0.02)?.state.guesses[0].id()))
     }
+
+    /// The fixture that gives.
+    fn fixture(&self) -> Option<&'static str> {
+        self.look(|look, base| Some(look.fixture(base, 0.02)?.state.guesses[0].id()))
+    }
 }
 
 /// A trial of an effect, of the evidence given.
@@ -201,6 +206,16 @@ fn what_takes_up_less_than_eq_11_misses_of_any_muscle_gets_no_name() {
     let (map, asked) = lock_up.map_and_asked();
     assert!(map < 0.8 * asked.least, "{map} {asked:?}");
     assert_eq!(lock_up.of_the_map(), None);
+}
+
+#[test]
+fn a_fixture_is_named_only_where_it_gives_by_more_than_the_ends_of_a_muscle_do() {
+    let soft = |compliance_m_per_n| Desk::of(&[("series-compliance", &[compliance_m_per_n, 0.0, 0.0], &[])]);
+    assert_eq!((soft(2e-5).fixture(), soft(2e-5).of_the_map()), (Some("series-compliance"), None));
+    assert_eq!((soft(4e-6).fixture(), soft(4e-6).of_the_map()), (None, None));
+    let mut limited = soft(2e-5);
+    limited.limits.matters_above_n = Some(500.0);
+    assert_eq!(limited.fixture(), None);
 }
 
 #[test]

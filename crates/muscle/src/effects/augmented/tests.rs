@@ -131,6 +131,21 @@ fn a_settled_fixture_is_stretched_by_the_force_that_results() {
 }
 
 #[test]
+fn a_static_map_goes_with_what_is_recorded_and_not_with_what_the_muscle_sees() {
+    let spring = term("series-compliance", &[2e-5, 0.0, 0.0], &[]);
+    // 100 N for every tenth of contraction.
+    let amplitudes: Vec<f64> = (0..20).map(|index| if index == 0 { 50.0 } else { 0.0 }).collect();
+    let map = term("static-map", &[0.0, 5e5, 0.05, 0.15], &amplitudes);
+    let now = Moment { force_n: 300.0, ..Moment::settled(&nominal(), 3e5, 0.24, 1.0) };
+    let [alone_n, both_n] = [vec![spring.clone()], vec![spring, map]].map(|terms| {
+        let model = AugmentedModel::new(base(), terms);
+        model.start().force_n(&model, now)
+    });
+    let recorded_n = 1e3 * (nominal().contraction_ratio(0.24) - 0.1);
+    assert!((both_n - alone_n - recorded_n).abs() < 1e-9, "{} {recorded_n}", both_n - alone_n);
+}
+
+#[test]
 fn a_muscle_leaves_instruments_and_fixture_behind() {
     let model = AugmentedModel::new(
         base(),

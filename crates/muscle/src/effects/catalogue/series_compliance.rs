@@ -119,7 +119,8 @@ static PAGE: Page = Page {
         },
         Symbol { symbol: "F", unit: "N", meaning: "force, as measured where it was measured" },
     ],
-    validity: "A fixture without play; slow against its own resonance. The speed is left as recorded.",
+    validity: "A fixture without play; slow against its own resonance. The speed is left as recorded. What gives by less than about \
+               1.3 radii of the muscle at the largest force may be the ends of the muscle itself, and gets no name.",
     source: "springs in series",
     signature: "The residual is static, and goes with the force times the stiffness of the muscle: largest at high \
                 pressure and small contraction, where the muscle seems too soft.",

@@ -94,6 +94,11 @@ impl Effect for StaticMap {
         AMPLITUDES
     }
 
+    /// It is what eq. 11 leaves of the recordings, and was fitted over what these have.
+    fn pulls_as_recorded(&self) -> bool {
+        true
+    }
+
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         Box::new(State { pressure_pa: (shape[0], shape[1]), contraction_ratio: (shape[2], shape[3]) })
     }

@@ -9,11 +9,12 @@ static inline void pam_legendre(double value, double low, double high, double po
     polynomials[4] = 0.125 * ((35.0 * x * x - 30.0) * x * x + 3.0);
 }
 
-static inline double pam_static_map_pulls(const pam_moment *now)
+/* Of what is recorded, whatever the muscle sees of it. */
+static inline double pam_static_map_pulls(const pam_moment *moment)
 {
     double p[5], e[5];
-    pam_legendre(now->pressure_pa, PAM_STATIC_MAP_LOWEST_PA, PAM_STATIC_MAP_HIGHEST_PA, p);
-    pam_legendre(now->contraction_ratio, PAM_STATIC_MAP_LOWEST_CONTRACTION_RATIO,
+    pam_legendre(moment->pressure_pa, PAM_STATIC_MAP_LOWEST_PA, PAM_STATIC_MAP_HIGHEST_PA, p);
+    pam_legendre(moment->contraction_ratio, PAM_STATIC_MAP_LOWEST_CONTRACTION_RATIO,
                  PAM_STATIC_MAP_HIGHEST_CONTRACTION_RATIO, e);
     return PAM_STATIC_MAP_EVEN_P0_E1_N * p[0] * e[1] + PAM_STATIC_MAP_EVEN_P1_E0_N * p[1] * e[0]
            + PAM_STATIC_MAP_EVEN_P0_E2_N * p[0] * e[2] + PAM_STATIC_MAP_EVEN_P1_E1_N * p[1] * e[1]
@@ -22,7 +23,7 @@ static inline double pam_static_map_pulls(const pam_moment *now)
            + PAM_STATIC_MAP_EVEN_P3_E0_N * p[3] * e[0] + PAM_STATIC_MAP_EVEN_P0_E4_N * p[0] * e[4]
            + PAM_STATIC_MAP_EVEN_P1_E3_N * p[1] * e[3] + PAM_STATIC_MAP_EVEN_P2_E2_N * p[2] * e[2]
            + PAM_STATIC_MAP_EVEN_P3_E1_N * p[3] * e[1] + PAM_STATIC_MAP_EVEN_P4_E0_N * p[4] * e[0]
-           + now->direction
+           + moment->direction
                  * (PAM_STATIC_MAP_ODD_P0_E0_N * p[0] * e[0] + PAM_STATIC_MAP_ODD_P0_E1_N * p[0] * e[1]
                     + PAM_STATIC_MAP_ODD_P1_E0_N * p[1] * e[0] + PAM_STATIC_MAP_ODD_P0_E2_N * p[0] * e[2]
                     + PAM_STATIC_MAP_ODD_P1_E1_N * p[1] * e[1] + PAM_STATIC_MAP_ODD_P2_E0_N * p[2] * e[0]);
