@@ -54,8 +54,8 @@ pub struct DiagnosisArtifact {
     /// What the force does at one frequency while no drive does; none where nothing was found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
-    /// Whether the augmented model has a smooth static map over pressure and contraction, which every figure of `fit` after the
-    /// effects includes.
+    /// Whether the augmented model has a smooth static map over pressure and contraction, or a stretch of the ends, which is one of its
+    /// own; every figure of `fit` after the effects includes it.
     #[serde(default)]
     pub static_map: bool,
     /// Share of the excess over the noise floor (mean squares) that the effects leave unexplained, in [0, 1].

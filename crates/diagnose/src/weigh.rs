@@ -9,7 +9,7 @@ use crate::diagnose::Diagnosis;
 use crate::discover;
 use crate::error::DiagnoseError;
 use crate::held_error::WORSE;
-use crate::nuisance::MAP_ID;
+use crate::nuisance::{ENDS_ID, MAP_ID};
 use crate::typical::FOLLOWED_WITHIN;
 use crate::{held, periodic, words};
 
@@ -136,9 +136,9 @@ impl Diagnosis {
         (!self.effects.is_empty() && after_n > WORSE * before_n).then_some((before_n, after_n))
     }
 
-    /// Whether the augmented model has a smooth static map.
+    /// Whether the augmented model has a smooth static map, be it that of the ends alone.
     pub(crate) fn has_map(&self) -> bool {
-        self.entries.iter().any(|entry| entry.id == MAP_ID)
+        self.entries.iter().any(|entry| [MAP_ID, ENDS_ID].contains(&entry.id.as_str()))
     }
 
     /// What the verdict says in numbers.

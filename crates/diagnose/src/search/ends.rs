@@ -22,10 +22,12 @@ pub(super) const TAPER_ID: &str = "end-taper";
 /// Share of the mean square over held-out blocks that the ends must take up.
 const WORTH_ENDS: f64 = 0.02;
 
-/// What ends surely grow by under the largest force, in radii of the muscle at rest, to first order.
-const SHORTEST: f64 = 0.6;
-/// Most that a fixture which gives may give by and still be taken for the ends, in radii as well: about two thirds of one at either end.
-const LONGEST: f64 = 1.3;
+/// What the ends alone may grow by under the largest force, to first order, in radii of the muscle at rest. Of 116 healthy muscles of slices
+/// that this was chosen by, which have ends, 114 grow by less, the median by 0.2; of 50 without ends none by more than 0.23.
+const OF_ENDS: f64 = 0.6;
+/// What a fixture that gives must give by in the place of such ends, in radii as well: about two thirds of one at either end. Those that were
+/// concealed beside them gave by 1.1 to 3.1, what looked like one by 0.7 to 1.8.
+const OF_A_FIXTURE: f64 = 1.3;
 
 /// Share of the evidence of another static effect below which it is that effect, which the ends would take a part of.
 const BY_FAR: f64 = 0.5;
@@ -57,23 +59,23 @@ impl Ends {
         let is_other = |effect: &dyn Effect| effect.is_static() && !effect.is_odd() && effect.page().id != FIXTURE_ID;
         let others = trial::among(bare, &base.state, &base.held_out, seen, &Shapes::new(), &is_other);
         let is_another = others.first().is_some_and(|other| log_ratio < BY_FAR * other.log_ratio);
-        if radii < -SHORTEST || is_another {
+        if radii < -OF_ENDS || is_another {
             return Self::Unseen;
         }
-        if radii > SHORTEST && given_m(bare, base, seen).is_some_and(|m| m > LONGEST * bare.muscle.rest_radius_m) {
+        if radii > OF_ENDS && given_m(bare, base, seen).is_some_and(|m| m > OF_A_FIXTURE * bare.muscle.rest_radius_m) {
             return Self::Exceeded;
         }
         Self::Stretch(nuisance, Box::new(judged))
     }
 }
 
-/// What a fixture beside `base` gives by under the largest force, in m.
+/// What a fixture beside `base` gives by under the largest force, in m, if it went on below half of that as above it: ends give most before
+/// they are straight, and a fixture that gives there alone looks like them.
 fn given_m(bare: &Setting<'_>, base: &Judged, seen: &Seen) -> Option<f64> {
     let is_fixture = |effect: &dyn Effect| effect.page().id == FIXTURE_ID;
     let trials = trial::among(bare, &base.state, &base.held_out, seen, &Shapes::new(), &is_fixture);
     let named = settle(bare, base, trials.first()?)?;
     let given_m = |force_n: f64| named.state.guesses.last().map(|guess| length_given_m(bare, guess, force_n));
-    // Ends give most before they are straight: what gives there alone is none.
     let highest_n = seen.force_n.1;
     Some(2.0 * (given_m(highest_n)? - given_m(0.5 * highest_n)?))
 }

@@ -1,6 +1,6 @@
 //! Which effects, if any: forward one at a time, with a second look at each that was taken.
 //!
-//! [`mod@beside`] is what a hypothesis is judged beside, [`mod@forward`] the selection itself, [`mod@look`] a look at the catalogue,
+//! [`mod@ends`] is what every muscle has beside eq. 11, [`mod@beside`] what a hypothesis is judged beside, [`mod@forward`] the selection itself, [`mod@look`] a look at the catalogue,
 //! [`mod@worth`] what a trial must gain, [`mod@settle`] how what was taken settles with what was there.
 
 mod beside;
