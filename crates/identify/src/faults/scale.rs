@@ -13,7 +13,8 @@
 //! | `g`    | gain: 0.6 to 1.3 for every muscle, times that of the force, over that of the pressure |
 //! | `p₀`   | pressure below which the muscle does nothing: a zero, or physics                     |
 //!
-//! A gain that no muscle has and that a pair of units explains is a unit under the wrong name.
+//! A gain that no muscle has and that a pair of units explains is a unit under the wrong name, if the force in the mean is none that a
+//! muscle has either.
 
 use nalgebra::{Matrix4, Vector4};
 use pam_muscle::Muscle;
@@ -28,6 +29,9 @@ use crate::prepare::Gated;
 const GAINS: (f64, f64) = (0.6, 1.3);
 /// Gains beyond which there is something wrong for certain: the largest k₁ of a muscle, 1.1, in pounds is 0.25.
 const BEYOND: (f64, f64) = (0.25, 2.7);
+/// Times by which the force itself, in the mean, must differ from that of a usual muscle as well: a gauge that lags behind the motion
+/// has a gain that no muscle has, at the force of any.
+const LEVEL: f64 = 2.0;
 /// Standard errors by which a gain must lie beyond.
 const SURELY: f64 = 3.0;
 /// Rows that share an error with one: what the sum leaves is misfit, not noise.
@@ -87,9 +91,10 @@ pub fn find(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
     if !moves(look) {
         return None;
     }
-    let (gain, explained, error) = gain(look, muscle)?;
+    let Scale { gain, explained, error, level } = Scale::of(look, muscle)?;
     // A pressure that moves little does not tell a gain from a zero.
-    let may_be_in_order = gain + SURELY * error > BEYOND.0 && gain - SURELY * error < BEYOND.1;
+    let may_be_in_order = gain + SURELY * error > BEYOND.0 && gain - SURELY * error < BEYOND.1
+        || level.is_some_and(|level| (1.0 / LEVEL..=LEVEL).contains(&level));
     if explained < EXPLAINED || may_be_in_order || gain <= 0.0 {
         return None;
     }
@@ -113,39 +118,55 @@ fn moves(look: &Look) -> bool {
     high - low > LEAST_RANGE * high.abs()
 }
 
-/// `g` by least squares, the share of the force that the sum explains, and the standard error of `g`; none where the force says
-/// nothing.
-fn gain(look: &Look, muscle: &Muscle) -> Option<(f64, f64, f64)> {
-    let (gas, bladder) = (Gas::new(muscle), Bladder::new(muscle));
-    // In bar and per hundred newtons, so that the columns are of one size.
-    let columns = |pressure_pa: f64, length_m: f64| {
-        let per_bar = 1e-2 * gas.force_n(1e5, muscle.contraction_ratio(length_m), 1.0, 1.05);
-        let rubber = 1e-2 * bladder.force_n(length_m, BLADDER_PA[0], BLADDER_PA[1]);
-        Vector4::new(1e-5 * pressure_pa * per_bar, per_bar, rubber, 1.0)
-    };
-    let (mut normal, mut right) = (Matrix4::<f64>::zeros(), Vector4::<f64>::zeros());
-    let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
-    for (pressure_pa, length_m, force_n) in look.rows() {
-        let row = columns(pressure_pa, length_m);
-        if row.iter().all(|value| value.is_finite()) && force_n.is_finite() {
-            let force = 1e-2 * force_n;
-            normal += row * row.transpose();
-            right += row * force;
-            (n, sum, squares) = (n + 1.0, sum + force, squares + force * force);
+/// What the sum says of a recording.
+#[derive(Debug, Clone, Copy)]
+struct Scale {
+    /// `g` by least squares.
+    gain: f64,
+    /// Share of the force that the sum explains.
+    explained: f64,
+    /// Standard error of `g`.
+    error: f64,
+    /// Force over that of a usual muscle, in the mean; none where that would not pull.
+    level: Option<f64>,
+}
+
+impl Scale {
+    /// Of the rows of `look`; none where the force says nothing.
+    fn of(look: &Look, muscle: &Muscle) -> Option<Self> {
+        let (gas, bladder) = (Gas::new(muscle), Bladder::new(muscle));
+        // In bar and per hundred newtons, so that the columns are of one size.
+        let columns = |pressure_pa: f64, length_m: f64| {
+            let per_bar = 1e-2 * gas.force_n(1e5, muscle.contraction_ratio(length_m), 1.0, 1.05);
+            let rubber = 1e-2 * bladder.force_n(length_m, BLADDER_PA[0], BLADDER_PA[1]);
+            Vector4::new(1e-5 * pressure_pa * per_bar, per_bar, rubber, 1.0)
+        };
+        let (mut normal, mut right) = (Matrix4::<f64>::zeros(), Vector4::<f64>::zeros());
+        let (mut n, mut sum, mut squares, mut usual_sum) = (0.0, 0.0, 0.0, 0.0);
+        // A little of what muscles have, for what the recordings do not say: no zero, rubber of latex.
+        let usual = Vector4::new(0.9, 0.0, 1.0, 0.0);
+        for (pressure_pa, length_m, force_n) in look.rows() {
+            let row = columns(pressure_pa, length_m);
+            if row.iter().all(|value| value.is_finite()) && force_n.is_finite() {
+                let force = 1e-2 * force_n;
+                normal += row * row.transpose();
+                right += row * force;
+                (n, sum, squares) = (n + 1.0, sum + force, squares + force * force);
+                usual_sum += row.dot(&usual);
+            }
         }
+        let trust = Matrix4::from_diagonal(&Vector4::new(1e-6, 1e-4, 1e-3, 1e-6)) * n;
+        let inverse = (normal + trust).try_inverse()?;
+        let found = inverse * (right + trust * usual);
+        let residual = (squares - 2.0 * found.dot(&right) + (normal * found).dot(&found)).max(0.0);
+        let spread = squares - sum * sum / n.max(1.0);
+        if n < 16.0 || spread <= 0.0 {
+            return None;
+        }
+        let error = (CORRELATED * residual / n * inverse[(0, 0)]).sqrt();
+        let level = (usual_sum > 0.0).then(|| sum / usual_sum);
+        Some(Self { gain: found[0], explained: 1.0 - residual / spread, error, level })
     }
-    // A little of what muscles have, for what the recordings do not say: no zero, rubber of latex.
-    let usual = Vector4::new(0.9, 0.0, 1.0, 0.0);
-    let trust = Matrix4::from_diagonal(&Vector4::new(1e-6, 1e-4, 1e-3, 1e-6)) * n;
-    let inverse = (normal + trust).try_inverse()?;
-    let found = inverse * (right + trust * usual);
-    let residual = (squares - 2.0 * found.dot(&right) + (normal * found).dot(&found)).max(0.0);
-    let spread = squares - sum * sum / n.max(1.0);
-    if n < 16.0 || spread <= 0.0 {
-        return None;
-    }
-    let error = (CORRELATED * residual / n * inverse[(0, 0)]).sqrt();
-    Some((found[0], 1.0 - residual / spread, error))
 }
 
 #[cfg(test)]
@@ -164,8 +185,27 @@ mod tests {
             (pressure_pa, length_m, model.force_n(pressure_pa, length_m, 0.0) - 20.0 * way)
         });
         let look = Look::of(rows);
-        let gain = gain(&look, model.muscle()).map(|(gain, _, _)| gain);
+        let gain = Scale::of(&look, model.muscle()).map(|scale| scale.gain);
         (look, gain)
+    }
+
+    #[test]
+    fn a_gauge_that_lags_has_a_gain_of_none_at_the_force_of_any_muscle() {
+        let model = crate::testing::model();
+        // The muscle shortens as it is filled, and the gauge says so a sixth of a cycle later; in the unit of the force or another.
+        let scale = |factor: f64| {
+            let rows = (0..2000).map(|row| {
+                let phase = std::f64::consts::TAU * f64::from(row) / 200.0;
+                let (length_m, pressure_pa) = (0.25 - 0.012 * phase.sin(), 1.8e5 + 9e4 * phase.sin());
+                let late_pa = 1.8e5 + 9e4 * (phase - 1.4).sin();
+                (late_pa, length_m, factor * model.force_n(pressure_pa, length_m, 0.0))
+            });
+            Scale::of(&Look::of(rows), model.muscle()).expect("a force")
+        };
+        let (own, pounds) = (scale(1.0), scale(1.0 / 4.448));
+        assert!(own.gain < BEYOND.0 && own.explained > EXPLAINED, "{own:?}");
+        let within = |scale: Scale| scale.level.is_some_and(|level| (1.0 / LEVEL..=LEVEL).contains(&level));
+        assert!(within(own) && !within(pounds), "{own:?} {pounds:?}");
     }
 
     #[test]
