@@ -19,8 +19,9 @@ pub(super) const FIXTURE_ID: &str = "series-compliance";
 /// Id of ends that taper.
 pub(super) const TAPER_ID: &str = "end-taper";
 
-/// Share of the mean square over held-out blocks that the ends must take up.
-const WORTH_ENDS: f64 = 0.02;
+/// Share of the mean square over held-out blocks that the ends must take up: what they take less of is not worth another base. Of 116
+/// healthy muscles of slices they take more of 78, of 50 without ends they take at most 0.49 but for one, 0.53.
+const WORTH_ENDS: f64 = 0.5;
 
 /// What the ends alone may grow by under the largest force, to first order, in radii of the muscle at rest. Of 116 healthy muscles of slices
 /// that this was chosen by, which have ends, 114 grow by less, the median by 0.2; of 50 without ends none by more than 0.23.

@@ -192,12 +192,12 @@ mod tests {
     #[test]
     fn a_gauge_that_lags_has_a_gain_of_none_at_the_force_of_any_muscle() {
         let model = crate::testing::model();
-        // The muscle shortens as it is filled, and the gauge says so a sixth of a cycle later; in the unit of the force or another.
+        // The muscle shortens as it is filled, and the gauge says so a fifth of a cycle later; in the unit of the force or another.
         let scale = |factor: f64| {
             let rows = (0..2000).map(|row| {
                 let phase = std::f64::consts::TAU * f64::from(row) / 200.0;
                 let (length_m, pressure_pa) = (0.25 - 0.012 * phase.sin(), 1.8e5 + 9e4 * phase.sin());
-                let late_pa = 1.8e5 + 9e4 * (phase - 1.4).sin();
+                let late_pa = 1.8e5 + 9e4 * (phase - 1.3).sin();
                 (late_pa, length_m, factor * model.force_n(pressure_pa, length_m, 0.0))
             });
             Scale::of(&Look::of(rows), model.muscle()).expect("a force")
