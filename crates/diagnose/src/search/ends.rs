@@ -56,11 +56,13 @@ impl Ends {
             return Self::Unseen;
         }
         let radii = stretch_m / bare.muscle.rest_radius_m;
+        if radii < -OF_ENDS {
+            return Self::Unseen;
+        }
         let log_ratio = base.held_out.log_ratio(&judged.held_out);
         let is_other = |effect: &dyn Effect| effect.is_static() && !effect.is_odd() && effect.page().id != FIXTURE_ID;
         let others = trial::among(bare, &base.state, &base.held_out, seen, &Shapes::new(), &is_other);
-        let is_another = others.first().is_some_and(|other| log_ratio < BY_FAR * other.log_ratio);
-        if radii < -OF_ENDS || is_another {
+        if others.first().is_some_and(|other| log_ratio < BY_FAR * other.log_ratio) {
             return Self::Unseen;
         }
         if radii > OF_ENDS && given_m(bare, base, seen).is_some_and(|m| m > OF_A_FIXTURE * bare.muscle.rest_radius_m) {

@@ -87,6 +87,16 @@ fn stands_for_map(gained: f64, map: f64, log_ratio: f64, best_ratio: f64) -> boo
     gained > OF_THE_MAP * map && log_ratio > LEAST_LOG_RATIO && log_ratio > RIVAL * best_ratio
 }
 
+/// What stands beside forms of what was named.
+struct Formed {
+    /// The forms, and what is in without a static map.
+    nuisance: Nuisance,
+    /// The hypothesis beside them.
+    bare: Judged,
+    /// What a static map takes up there, in N².
+    map: f64,
+}
+
 /// What every look at the catalogue shares.
 pub(super) struct Look<'a> {
     /// Beside the nuisances of the recordings alone.
@@ -186,16 +196,28 @@ impl Look<'_> {
         again(&self.plain.beside(&even), &named)
     }
 
-    /// What is left of `best` beside forms of what was named, without a static map, and by how much the map lowers that, in N².
-    fn beside_forms(&self, best: &Judged) -> Option<(Nuisance, Judged, f64)> {
-        // What is left of an effect that was named is none of the map's.
+    /// `best` beside other forms of what was named: what is left of an effect is none of the map's.
+    fn formed(&self, best: &Judged) -> Option<Formed> {
         let forms = Forms::of(self.mapped, &best.state, self.coordinates);
-        let [formed, formed_map] =
+        let [nuisance, with_map] =
             [self.plain, self.mapped].map(|setting| forms.beside(setting.nuisance, &setting.track.counted));
-        let (bare, with_map) =
-            (again(&self.plain.beside(&formed), best)?, again(&self.plain.beside(&formed_map), best)?);
-        let map = bare.held_out.mean_square() - with_map.held_out.mean_square();
-        Some((formed, bare, map))
+        let bare = again(&self.plain.beside(&nuisance), best)?;
+        let mapped = again(&self.plain.beside(&with_map), best)?;
+        let map = bare.held_out.mean_square() - mapped.held_out.mean_square();
+        Some(Formed { nuisance, bare, map })
+    }
+
+    /// `best` with one more static effect, if there is one: a fixture that gives, if that may be one, or what stands for the static map.
+    pub(super) fn static_effect(
+        &self,
+        best: &Judged,
+        base: &Judged,
+        floor_square: f64,
+        may_be_fixture: bool,
+    ) -> Option<Judged> {
+        let formed = self.formed(best)?;
+        let fixture = may_be_fixture.then(|| self.fixture(&formed, floor_square)).flatten();
+        fixture.or_else(|| self.of_the_map(&formed, base, floor_square))
     }
 
     /// Trials of static effects beside `bare`, the same in both directions; best first.
@@ -204,44 +226,42 @@ impl Look<'_> {
         trial::among(beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &takes)
     }
 
-    /// `best` with a fixture that gives, where beside what was named the muscle grows longer under force by more than its ends can.
-    pub(super) fn fixture(&self, best: &Judged, floor_square: f64) -> Option<Judged> {
-        let (formed, bare, map) = self.beside_forms(best)?;
-        let beside = self.plain.beside(&formed);
-        if map < matters(self.limits, floor_square) || !matches!(Ends::of(&beside, &bare, self.seen), Ends::Exceeded) {
+    /// With a fixture that gives, where beside what was named the muscle grows longer under force by more than its ends can.
+    fn fixture(&self, Formed { nuisance, bare, map }: &Formed, floor_square: f64) -> Option<Judged> {
+        let beside = self.plain.beside(nuisance);
+        if *map < matters(self.limits, floor_square) || !matches!(Ends::of(&beside, bare, self.seen), Ends::Exceeded) {
             return None;
         }
-        let trials = self.statics(&beside, &bare);
+        let trials = self.statics(&beside, bare);
         // The ends taper beside a fixture that gives as well.
         let others = trials.iter().filter(|trial| ![ends::FIXTURE_ID, ends::TAPER_ID].contains(&trial.guess.id()));
         let rival_ratio = RIVAL * others.map(|trial| trial.log_ratio).fold(0.0, f64::max);
         let fixture = trials.iter().find(|trial| trial.guess.id() == ends::FIXTURE_ID)?;
         let gained = bare.held_out.mean_square() - fixture.held_out.mean_square();
-        let stands = gained > OF_THE_FIXTURE * map && fixture.log_ratio > FIXTURE_LOG_RATIO.max(rival_ratio);
-        stands.then(|| again(self.mapped, &settle(&beside, &bare, fixture)?)).flatten()
+        let stands = gained > OF_THE_FIXTURE * *map && fixture.log_ratio > FIXTURE_LOG_RATIO.max(rival_ratio);
+        stands.then(|| again(self.mapped, &settle(&beside, bare, fixture)?)).flatten()
     }
 
-    /// `best` with the static effect that stands for the static map, if there is one; no fixture, which gives by more than ends do or
-    /// not at all.
-    pub(super) fn static_effect(&self, best: &Judged, base: &Judged, floor_square: f64) -> Option<Judged> {
-        let (formed, bare, map) = self.beside_forms(best)?;
-        let beside = self.plain.beside(&formed);
+    /// With the static effect that stands for the static map; no fixture, which gives by more than ends do or not at all.
+    fn of_the_map(&self, formed: &Formed, base: &Judged, floor_square: f64) -> Option<Judged> {
+        let Formed { nuisance, bare, map } = formed;
+        let beside = self.plain.beside(nuisance);
         let (low_n, high_n) = self.seen.force_n;
         let asked = Asked::of(self.limits, floor_square, high_n - low_n);
-        if map < asked.least {
+        if *map < asked.least {
             return None;
         }
-        let mut trials = self.statics(&beside, &bare);
+        let mut trials = self.statics(&beside, bare);
         trials.retain(|trial| trial.guess.id() != ends::FIXTURE_ID);
         let best_ratio = trials.first().map_or(0.0, |trial| trial.log_ratio);
         let gained = |trial: &Trial| bare.held_out.mean_square() - trial.held_out.mean_square();
-        let stands = |trial: &&Trial| stands_for_map(gained(trial), map, trial.log_ratio, best_ratio);
+        let stands = |trial: &&Trial| stands_for_map(gained(trial), *map, trial.log_ratio, best_ratio);
         let named: Vec<(bool, Judged)> = trials
             .iter()
             .filter(stands)
-            .filter_map(|trial| settle(&beside, &bare, trial))
+            .filter_map(|trial| settle(&beside, bare, trial))
             .map(|named| (is_strained(&beside, &named, base), named))
-            .filter(|(strained, named)| asked.is_met(map, sees(named), *strained))
+            .filter(|(strained, named)| asked.is_met(*map, sees(named), *strained))
             .collect();
         let at_ease = named.iter().find(|(strained, _)| !strained).or(named.first());
         again(self.mapped, &at_ease?.1)

@@ -226,15 +226,9 @@ pub fn search(
     let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
     let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
     let mut parsimonious = Vec::new();
-    if !ends_stretch
-        && best.state.guesses.len() < limits.max_effects
-        && let Some(next) = look.fixture(&best, floor_square)
-    {
-        parsimonious.push(ends::FIXTURE_ID);
-        best = next;
-    }
     while best.state.guesses.len() < limits.max_effects {
-        let Some(next) = look.static_effect(&best, &base, floor_square) else { break };
+        let may_be_fixture = !ends_stretch && parsimonious.is_empty();
+        let Some(next) = look.static_effect(&best, &base, floor_square, may_be_fixture) else { break };
         parsimonious.push(next.state.guesses[next.state.guesses.len() - 1].id());
         best = next;
     }

@@ -91,10 +91,11 @@ pub fn find(gate: &Gated, look: &Look, muscle: &Muscle) -> Option<Fault> {
     if !moves(look) {
         return None;
     }
-    let Scale { gain, explained, error, level } = Scale::of(look, muscle)?;
+    let scale = Scale::of(look, muscle)?;
+    let Scale { gain, explained, error, .. } = scale;
     // A pressure that moves little does not tell a gain from a zero.
-    let may_be_in_order = gain + SURELY * error > BEYOND.0 && gain - SURELY * error < BEYOND.1
-        || level.is_some_and(|level| (1.0 / LEVEL..=LEVEL).contains(&level));
+    let may_be_in_order =
+        gain + SURELY * error > BEYOND.0 && gain - SURELY * error < BEYOND.1 || scale.is_at_the_force_of_a_muscle();
     if explained < EXPLAINED || may_be_in_order || gain <= 0.0 {
         return None;
     }
@@ -132,6 +133,11 @@ struct Scale {
 }
 
 impl Scale {
+    /// Whether the force, in the mean, is that of a usual muscle within [`LEVEL`].
+    fn is_at_the_force_of_a_muscle(self) -> bool {
+        self.level.is_some_and(|level| (1.0 / LEVEL..=LEVEL).contains(&level))
+    }
+
     /// Of the rows of `look`; none where the force says nothing.
     fn of(look: &Look, muscle: &Muscle) -> Option<Self> {
         let (gas, bladder) = (Gas::new(muscle), Bladder::new(muscle));
@@ -204,8 +210,7 @@ mod tests {
         };
         let (own, pounds) = (scale(1.0), scale(1.0 / 4.448));
         assert!(own.gain < BEYOND.0 && own.explained > EXPLAINED, "{own:?}");
-        let within = |scale: Scale| scale.level.is_some_and(|level| (1.0 / LEVEL..=LEVEL).contains(&level));
-        assert!(within(own) && !within(pounds), "{own:?} {pounds:?}");
+        assert!(own.is_at_the_force_of_a_muscle() && !pounds.is_at_the_force_of_a_muscle(), "{own:?} {pounds:?}");
     }
 
     #[test]

@@ -63,12 +63,12 @@ impl Desk {
 
     /// The effect that stands for the static map.
     fn of_the_map(&self) -> Option<&'static str> {
-        self.look(|look, base| Some(look.static_effect(base, base, 0.02)?.state.guesses[0].id()))
+        self.look(|look, base| Some(look.of_the_map(&look.formed(base)?, base, 0.02)?.state.guesses[0].id()))
     }
 
     /// The fixture that gives.
     fn fixture(&self) -> Option<&'static str> {
-        self.look(|look, base| Some(look.fixture(base, 0.02)?.state.guesses[0].id()))
+        self.look(|look, base| Some(look.fixture(&look.formed(base)?, 0.02)?.state.guesses[0].id()))
     }
 }
 

@@ -4,8 +4,9 @@
 //! F = F_base - c F_base ∂F_base/∂L
 //! ```
 //!
-//! Within about a radius of a clamp the strands do not follow the kinematics of a cylinder: they straighten as they are pulled.
-//! To first order that is a spring in series, `F_base(p, L - c F)`, and no more than a radius long at the largest force.
+//! Within about a radius of a clamp the strands do not follow the kinematics of a cylinder, and straighten as they are pulled. Muscles of
+//! slices in equilibrium, clamped at both ends, show it as a spring in series, which to first order is `F_base(p, L - c F)`, and some
+//! tenths of a radius long at the largest force. It is no derived law of ends.
 
 use crate::coordinate::Coordinate;
 use crate::effects::page::{Dependence, Page, Symbol, Typical};
@@ -64,12 +65,12 @@ static PAGE: Page = Page {
         Symbol {
             symbol: "c",
             unit: "m/N",
-            meaning: "stretch per force; at the largest force no longer than a radius of the muscle",
+            meaning: "stretch per force; at the largest force some tenths of a radius of the muscle",
         },
         Symbol { symbol: "F_base", unit: "N", meaning: "force of eq. 11 without friction" },
     ],
     validity: "A stretch that is small against the way in which the force changes.",
-    source: "springs in series, to first order",
+    source: "springs in series, to first order; seen in slices in equilibrium that are clamped at their ends, not derived for them",
     signature: "The residual is static, and goes with the force times the stiffness of the muscle.",
     confused_with: &[],
     test: "a rod in the place of the muscle, pulled from 0 to 500 N while the length is recorded, shows what is the fixture's",
