@@ -43,6 +43,10 @@ const PRESSED_CHARGE: f64 = 0.7;
 /// effect.
 const DEGENERATE_CHARGE: f64 = 0.2;
 
+/// Times the evidence of every other effect from which on one whose share of a whole is all of it, or none, is not charged for that: it
+/// may be another effect then, but none that the catalogue has.
+const FAR_AHEAD: f64 = 2.0;
+
 /// Whether a shape is at an end of its range that says more than how: zero, and the ends that an effect means, say no more.
 pub(crate) fn is_degenerate(effect: &dyn Effect, shape: &[f64]) -> bool {
     effect
@@ -192,6 +196,7 @@ pub fn among(
             Some(Trial { guess, mean_square, before: before.clone(), held_out, log_ratio })
         })
         .collect();
+    restore_leaders(&mut trials);
     trials.sort_by(|left, right| right.log_ratio.total_cmp(&left.log_ratio));
     let mut listed: Vec<&str> = Vec::new();
     trials.retain(|trial| {
@@ -200,6 +205,22 @@ pub fn among(
         is_first
     });
     trials
+}
+
+/// Gives those of `trials` back what a share at an end of its range cost them that nothing else comes near.
+fn restore_leaders(trials: &mut [Trial]) {
+    let whole: Vec<f64> = trials
+        .iter()
+        .map(|trial| {
+            let Trial { guess, log_ratio, .. } = trial;
+            let is_share = is_degenerate(guess.effect, &guess.shape) && !wants_another(guess.effect, &guess.shape);
+            let whole = if is_share { log_ratio / DEGENERATE_CHARGE } else { *log_ratio };
+            let others = trials.iter().filter(|other| other.guess.id() != guess.id());
+            let nearest = others.map(|other| other.log_ratio).fold(0.0, f64::max);
+            if whole > FAR_AHEAD * nearest { whole } else { *log_ratio }
+        })
+        .collect();
+    trials.iter_mut().zip(whole).for_each(|(trial, whole)| trial.log_ratio = whole);
 }
 
 /// Share of its evidence that `guess` keeps for what it is and how freely it was found; `is_pressed` where an amplitude presses
@@ -320,6 +341,26 @@ mod tests {
     #[test]
     fn a_creep_that_is_all_of_the_length_is_a_relaxation_instead() {
         assert!(is_degenerate(of("pressure-creep"), &[6.0, 1.0]));
+    }
+
+    #[test]
+    fn a_share_that_is_all_costs_nothing_where_no_other_effect_comes_near() {
+        let held = HeldOut { blocks: vec![1.0], counts: vec![1.0], floor_square: 0.0 };
+        let trial = |id: &str, shape: &[f64], log_ratio: f64| {
+            let (sign, beginning) = (crate::hypothesis::Sign::Any, Beginning::Fresh);
+            let guess = CandidateEffect { effect: of(id), shape: shape.to_vec(), sign, beginning };
+            Trial { guess, mean_square: 1.0, before: held.clone(), held_out: held.clone(), log_ratio }
+        };
+        let first = |id: &str, shape: &[f64], log_ratio: f64, other: f64| {
+            let mut trials = [trial(id, shape, log_ratio), trial("channel-delay", &[0.02, 0.0], other)];
+            restore_leaders(&mut trials);
+            assert_eq!(trials[1].log_ratio, other);
+            trials[0].log_ratio
+        };
+        assert_eq!(first("pressure-creep", &[6.0, 1.0], 4.0, 9.9), 20.0);
+        assert_eq!(first("pressure-creep", &[6.0, 1.0], 4.0, 10.1), 4.0);
+        assert_eq!(first("pressure-creep", &[6.0, 0.9], 4.0, 1.0), 4.0, "that was not charged");
+        assert_eq!(first("rubber-hysteresis", &[1e-4], 4.0, 1.0), 4.0, "that is a width that nothing has");
     }
 
     #[test]

@@ -127,3 +127,35 @@ fn what_other_recordings_cannot_show_stands_on_strong_evidence_alone() {
     assert!(stands("force-step", &[0.0, 5.0], 9.0) && stands("thermal-softening", &[300.0], 9.0));
     assert!(!stands("force-step", &[0.0, 5.0], 5.0) && !stands("pressure-lag", &[0.15, 0.0], 9.0));
 }
+
+#[test]
+fn what_leads_all_others_beyond_doubt_is_not_denied_by_its_size_elsewhere() {
+    let lag: (&'static str, &[f64], &[f64]) = ("pressure-lag", &[0.15, 0.0], &[]);
+    let mut given = Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[lag]);
+    given.disturb();
+    let limits = Limits { confirmed: true, ..Limits::of_test(1, 0.3) };
+    let setting = Setting { floor_square: 0.09, ..given.setting() };
+    let mut found = search(&setting, &given.start, &given.model, &limits, &|| {}).expect("a search");
+    let held = |square| HeldOut { blocks: vec![square; 10], counts: vec![10.0; 10], floor_square: 0.0 };
+    let (before, after) = (held(9.0), held(1.0));
+    let wobbles = |held: HeldOut| HeldOut {
+        blocks: held.blocks.iter().enumerate().map(|(at, block)| block * (1.0 + 0.1 * (at % 3) as f64)).collect(),
+        ..held
+    };
+    let own = found.first.iter().position(|trial| trial.guess.id() == "pressure-lag").expect("a trial");
+    (found.first[own].before, found.first[own].held_out) = (before.clone(), wobbles(after.clone()));
+    (found.taken[0].without, found.taken[0].with) = (before, after);
+    let absent = [Some(Share { value: 0.0, error: 0.1 })];
+    let leads = |found: &mut Found, log_ratio: f64, other: f64| {
+        found.first.iter_mut().for_each(|trial| trial.log_ratio = other);
+        found.first[own].log_ratio = log_ratio;
+        assert_eq!(leads_beyond_doubt(found, 0), denied(found, &absent).is_none());
+        leads_beyond_doubt(found, 0)
+    };
+    assert!(leads(&mut found, OVERWHELMING, OVERWHELMING - 0.1));
+    assert!(!leads(&mut found, OVERWHELMING - 0.1, 0.0), "chance or another may give it");
+    assert!(!leads(&mut found, OVERWHELMING, OVERWHELMING + 0.1), "another explains more");
+    // Beside what else was found next to nothing is left for it.
+    found.taken[0].without = found.taken[0].with.clone();
+    assert!(!leads(&mut found, OVERWHELMING, 0.0));
+}
