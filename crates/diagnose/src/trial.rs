@@ -44,7 +44,8 @@ const PRESSED_CHARGE: f64 = 0.7;
 const DEGENERATE_CHARGE: f64 = 0.2;
 
 /// Times the evidence of every other effect from which on one whose share of a whole is all of it, or none, is not charged for that: it
-/// may be another effect then, but none that the catalogue has.
+/// may be another effect then, but none that the catalogue has. Of ten looked-at muscles that creep under pressure three were without a
+/// name by the charge, with three times the evidence of the next; beside a relaxation creep had one and a half times that.
 const FAR_AHEAD: f64 = 2.0;
 
 /// Whether a shape is at an end of its range that says more than how: zero, and the ends that an effect means, say no more.

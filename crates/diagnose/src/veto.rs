@@ -55,7 +55,9 @@ pub(crate) fn stands_unheard_of(effect: &dyn Effect, evidence: f64) -> bool {
     !effect.is_static() && evidence > OUTLASTS_ALONE
 }
 
-/// Evidence in the first look from which on the effect with the most of all stands, whatever held-out recordings say of its size.
+/// Evidence in the first look from which on the effect with the most of all stands, whatever held-out recordings say of its size. Of
+/// some 380 cases that were looked at, eight names that led with more were denied all the same, all of them right; one that led with 15
+/// was right as well, and the two wrong ones that led may have been given by chance, in one of thirty and in one of two.
 const OVERWHELMING: f64 = 16.0;
 
 /// Whether effect `index` of `found` had the most evidence of all in the first look, and so much that neither chance nor another effect
