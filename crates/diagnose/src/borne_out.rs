@@ -13,7 +13,7 @@ use crate::named::evidence_of;
 use crate::search::Found;
 use crate::state::Setting;
 use crate::track::Track;
-use crate::veto::{UNLIKELY, leads_beyond_doubt, stands_on_evidence};
+use crate::veto::{UNLIKELY, stands_on_evidence};
 
 /// Share of what is left of held-out recordings beyond the sensors, mean square, that a name must take away to be borne out by them; where
 /// its own force is less than that, they cannot tell. Of 180 names that were looked at, 104 of them right, 97 right and 34 wrong ones
@@ -73,7 +73,6 @@ pub(crate) fn let_go_of_others(setting: &Setting<'_>, found: &mut Found, held: &
                 share: share(without, with, setting.floor_square),
                 own: own_square(setting, found, held, index)? / beyond(without[0], setting.floor_square),
                 is_surely_there: found.is_confirmed(index),
-                leads: leads_beyond_doubt(found, index),
             };
             let against = shown.against(effect, found.evidence(index), evidence_of(found, index).p_value)?;
             Some((index, shown.share, against))
@@ -101,8 +100,6 @@ struct Shown {
     own: f64,
     /// Whether it is surely there with its size, beside whatever else is missing.
     is_surely_there: bool,
-    /// Whether it leads all others beyond doubt.
-    leads: bool,
 }
 
 impl Shown {
@@ -122,7 +119,7 @@ impl Shown {
             is_shown && chance < limit
         };
         let no_chance = if effect.is_static() { NO_CHANCE_OF_STATIC } else { NO_CHANCE };
-        let is_beyond_doubt = self.leads || evidence >= OVERWHELMING && chance < no_chance;
+        let is_beyond_doubt = evidence >= OVERWHELMING && chance < no_chance;
         if !is_beyond_doubt && self.share < self.least_share(effect, evidence) {
             Some(Against::HeldOut)
         } else {
@@ -196,7 +193,7 @@ mod tests {
 
     /// What speaks against the effect `id`, which has the force `own` in held-out recordings, with strong evidence.
     fn against(id: &str, share: f64, own: f64, chance: f64) -> Option<Against> {
-        Shown { share, own, is_surely_there: false, leads: false }.against(effect(id).expect("an id"), 15.0, chance)
+        Shown { share, own, is_surely_there: false }.against(effect(id).expect("an id"), 15.0, chance)
     }
 
     #[test]
@@ -210,7 +207,7 @@ mod tests {
     #[test]
     fn what_is_beyond_doubt_is_a_name_whatever_others_lose_by_it() {
         let against = |id: &str, evidence: f64, chance: f64| {
-            let shown = Shown { share: -1.0, own: 0.5, is_surely_there: false, leads: false };
+            let shown = Shown { share: -1.0, own: 0.5, is_surely_there: false };
             shown.against(effect(id).expect("an id"), evidence, chance)
         };
         assert_eq!(against("pressure-lag", 16.1, 9e-4), None);
@@ -218,8 +215,6 @@ mod tests {
         assert_eq!(against("pressure-lag", 60.0, 2e-3), Some(Against::HeldOut));
         assert_eq!(against("slack", 60.0, 1e-8), Some(Against::HeldOut));
         assert_eq!(against("slack", 60.0, 1e-10), None);
-        let leads = Shown { share: -1.0, own: 0.5, is_surely_there: false, leads: true };
-        assert_eq!(leads.against(effect("pressure-lag").expect("an id"), 15.9, 9e-3), None);
     }
 
     #[test]
@@ -237,9 +232,8 @@ mod tests {
     #[test]
     fn what_others_show_with_its_size_they_deny_only_where_it_does_harm() {
         let lag = effect("pressure-lag").expect("an id");
-        let there = |share: f64, evidence: f64| {
-            Shown { share, own: 0.5, is_surely_there: true, leads: false }.against(lag, evidence, 1e-9)
-        };
+        let there =
+            |share: f64, evidence: f64| Shown { share, own: 0.5, is_surely_there: true }.against(lag, evidence, 1e-9);
         assert_eq!((there(0.01, 8.0), there(-0.01, 8.0)), (None, Some(Against::HeldOut)));
         assert_eq!(there(0.01, 7.9), Some(Against::HeldOut), "and weak evidence needs more");
     }
@@ -247,9 +241,8 @@ mod tests {
     #[test]
     fn an_event_is_in_few_blocks_and_stands_on_strong_evidence() {
         let step = effect("force-step").expect("an id");
-        let happened = |evidence: f64| {
-            Shown { share: 0.0, own: 0.5, is_surely_there: false, leads: false }.against(step, evidence, 0.9)
-        };
+        let happened =
+            |evidence: f64| Shown { share: 0.0, own: 0.5, is_surely_there: false }.against(step, evidence, 0.9);
         assert_eq!((happened(10.1), happened(10.0)), (None, Some(Against::Chance)));
         assert_eq!(against("force-step", -0.1, 0.5, 9e-3), None, "it did not happen there");
         assert_eq!(against("force-step", 0.3, 0.5, 0.4), None, "others show it");
@@ -263,22 +256,15 @@ mod tests {
     #[test]
     fn a_name_stands_on_evidence_or_on_what_others_show() {
         let lag = effect("pressure-lag").expect("an id");
-        let weak = |share: f64, is_surely_there: bool| {
-            Shown { share, own: 0.1, is_surely_there, leads: false }.against(lag, 7.9, 1e-9)
-        };
+        let weak =
+            |share: f64, is_surely_there: bool| Shown { share, own: 0.1, is_surely_there }.against(lag, 7.9, 1e-9);
         assert_eq!(weak(0.4, false), Some(Against::Chance));
         assert_eq!((weak(0.6, false), weak(0.4, true)), (None, None), "others show it");
         assert_eq!(against("pressure-lag", 0.4, 0.1, 1e-9), None, "evidence is enough");
-        let there = |evidence: f64| {
-            Shown { share: 0.3, own: 0.3, is_surely_there: true, leads: false }.against(lag, evidence, 0.6)
-        };
+        let there = |evidence: f64| Shown { share: 0.3, own: 0.3, is_surely_there: true }.against(lag, evidence, 0.6);
         assert_eq!((there(8.0), there(7.9)), (None, Some(Against::Chance)), "both say so");
         let little = |id: &str, evidence: f64, chance: f64| {
-            Shown { share: 0.1, own: 0.1, is_surely_there: true, leads: false }.against(
-                effect(id).expect("an id"),
-                evidence,
-                chance,
-            )
+            Shown { share: 0.1, own: 0.1, is_surely_there: true }.against(effect(id).expect("an id"), evidence, chance)
         };
         assert_eq!(little("pressure-lag", FAINT, 0.4), None, "what is small may be surely there");
         assert_eq!(

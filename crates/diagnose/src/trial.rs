@@ -197,10 +197,6 @@ pub fn among(
             Some(Trial { guess, mean_square, before: before.clone(), held_out, log_ratio })
         })
         .collect();
-    // Beside what was named before, it may be what is left of that.
-    if state.guesses.is_empty() {
-        restore_leaders(&mut trials);
-    }
     trials.sort_by(|left, right| right.log_ratio.total_cmp(&left.log_ratio));
     let mut listed: Vec<&str> = Vec::new();
     trials.retain(|trial| {
@@ -211,8 +207,9 @@ pub fn among(
     trials
 }
 
-/// Gives those of `trials` back what a share at an end of its range cost them that nothing else comes near.
-fn restore_leaders(trials: &mut [Trial]) {
+/// Gives those of `trials`, of all the catalogue with nothing named before, back what a share at an end of its range cost them that
+/// nothing else comes near.
+pub(crate) fn restore_leaders(trials: &mut [Trial]) {
     let whole: Vec<f64> = trials
         .iter()
         .map(|trial| {

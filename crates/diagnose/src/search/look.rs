@@ -142,7 +142,12 @@ impl Look<'_> {
         // Other forms that only follow the noise are no better than none.
         let before = if bent.held_out.mean_square() < bare.held_out.mean_square() { &bent } else { &bare };
         let takes = |effect: &dyn Effect| self.allows(effect.page().id) && wanted(effect);
-        Some(trial::among(&beside, &bent.state, &before.held_out, self.seen, known, &takes))
+        let mut tried = trial::among(&beside, &bent.state, &before.held_out, self.seen, known, &takes);
+        // Beside what was named before, it may be what is left of that, and what was excluded may come nearer.
+        if best.state.guesses.is_empty() && self.limits.excluded.is_empty() {
+            trial::restore_leaders(&mut tried);
+        }
+        Some(tried)
     }
 
     /// What could not be tried on these recordings at all, as what gains nothing.

@@ -84,6 +84,8 @@ pub struct Found {
     pub features: Vec<Feature>,
     /// What no model, named or not, gets below: mean square over held-out blocks, in N².
     pub floor_square: f64,
+    /// Whether the first look was at all of the catalogue.
+    pub looked_at_all: bool,
     /// Structure that is left.
     pub left: Option<Structure>,
     /// What was in beside base and effects.
@@ -262,6 +264,7 @@ pub fn search(
         coordinates,
         features,
         floor_square,
+        looked_at_all: limits.excluded.is_empty(),
         left,
         nuisance,
         form_square: form_square(limits.sensor_floor_n, seen.force_n.1 - seen.force_n.0, FORM_AT_MOST),

@@ -129,7 +129,7 @@ fn what_other_recordings_cannot_show_stands_on_strong_evidence_alone() {
 }
 
 #[test]
-fn what_leads_all_others_beyond_doubt_is_not_denied_by_its_size_elsewhere() {
+fn what_outlasts_a_recording_and_leads_all_others_beyond_doubt_is_not_denied_by_its_size_elsewhere() {
     let lag: (&'static str, &[f64], &[f64]) = ("pressure-lag", &[0.15, 0.0], &[]);
     let mut given = Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[lag]);
     given.disturb();
@@ -142,7 +142,12 @@ fn what_leads_all_others_beyond_doubt_is_not_denied_by_its_size_elsewhere() {
         blocks: held.blocks.iter().enumerate().map(|(at, block)| block * (1.0 + 0.1 * (at % 3) as f64)).collect(),
         ..held
     };
-    let own = found.first.iter().position(|trial| trial.guess.id() == "pressure-lag").expect("a trial");
+    let own = found.first.iter().position(|trial| trial.guess.id() == "force-drift").expect("a trial");
+    let name = |found: &mut Found, id: &str, shape: &[f64]| {
+        found.first[own].guess = given.guess(id, shape);
+        found.best.state.guesses[0] = given.guess(id, shape);
+    };
+    name(&mut found, "force-drift", &[120.0]);
     (found.first[own].before, found.first[own].held_out) = (before.clone(), wobbles(after.clone()));
     (found.taken[0].without, found.taken[0].with) = (before, after);
     let absent = [Some(Share { value: 0.0, error: 0.1 })];
@@ -155,6 +160,12 @@ fn what_leads_all_others_beyond_doubt_is_not_denied_by_its_size_elsewhere() {
     assert!(leads(&mut found, OVERWHELMING, OVERWHELMING - 0.1));
     assert!(!leads(&mut found, OVERWHELMING - 0.1, 0.0), "chance or another may give it");
     assert!(!leads(&mut found, OVERWHELMING, OVERWHELMING + 0.1), "another explains more");
+    found.looked_at_all = false;
+    assert!(!leads(&mut found, OVERWHELMING, 0.0), "what was excluded may explain more");
+    found.looked_at_all = true;
+    name(&mut found, "pressure-lag", &[0.15, 0.0]);
+    assert!(!leads(&mut found, OVERWHELMING, 0.0), "a lag is the same in every recording");
+    name(&mut found, "force-drift", &[120.0]);
     // Beside what else was found next to nothing is left for it.
     found.taken[0].without = found.taken[0].with.clone();
     assert!(!leads(&mut found, OVERWHELMING, 0.0));
