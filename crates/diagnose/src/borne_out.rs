@@ -20,8 +20,9 @@ use crate::veto::{UNLIKELY, stands_on_evidence};
 /// stand (counted over shares of the first form of the rule); with half of it 99 and 36, with its double 96 and 30.
 const LEAST_SHARE: f64 = 0.2;
 /// Probability of as much evidence within what was fitted by chance, corrected for multiple comparisons, from which on it is none, whatever
-/// held-out recordings say. With half of it 96 right and 32 wrong ones stand, without it 98 and 42.
-const AS_LIKELY: f64 = 0.5;
+/// held-out recordings say. Of 180 names that were looked at, half of 0.5 took a right one and two wrong ones; of 244 others, 208 of them
+/// right, three wrong ones and no right one lie between this and 0.5, one wrong one between half of this and this.
+const LIKELY: f64 = 0.2;
 
 /// Evidence within what was fitted that is strong: a name with less, which held-out recordings do not show, stands on nothing, and one
 /// with as much, which is surely there in them, is no chance. Of 374 names in 798 cases that were looked at, 320 of them right, the
@@ -109,7 +110,7 @@ impl Shown {
         let is_event = effect.kind() == Kind::Event;
         // Where what outlasts a recording begins in them is not known, and its size there no measure.
         let is_there = self.is_surely_there && !effect.outlasts();
-        let limit = if self.share >= LEAST_SHARE || is_there { AS_LIKELY } else { UNLIKELY };
+        let limit = if self.share >= LEAST_SHARE || is_there { LIKELY } else { UNLIKELY };
         // An event is in one block or two, whatever all of them say.
         let is_sure = self.is_surely_there || is_event && stands_on_evidence(effect, evidence, chance);
         let stands = if evidence >= STRONG {
@@ -199,7 +200,7 @@ mod tests {
     #[test]
     fn what_others_would_show_is_asked_of_them() {
         for id in ["pressure-lag", "stribeck", "viscoelastic-relaxation"] {
-            assert_eq!(against(id, 0.21, 0.5, 0.4), None);
+            assert_eq!(against(id, 0.21, 0.5, 0.19), None);
             assert_eq!(against(id, 0.19, 0.5, 1e-9), Some(Against::HeldOut));
         }
     }
@@ -223,7 +224,7 @@ mod tests {
         for (id, own) in cannot {
             assert_eq!(against(id, -0.1, own, 9e-3), None);
             assert_eq!(against(id, 0.0, own, 0.011), Some(Against::Chance));
-            assert_eq!(against(id, 0.3, own, 0.4), None, "others show it");
+            assert_eq!(against(id, 0.3, own, 0.19), None, "others show it");
         }
         assert_eq!(against("slack", -0.3, 0.5, 1e-9), Some(Against::HeldOut), "it acts there, and is another");
         assert_eq!(against("force-drift", -2.0, 0.5, 1e-9), None, "it begins there anew");
@@ -245,12 +246,12 @@ mod tests {
             |evidence: f64| Shown { share: 0.0, own: 0.5, is_surely_there: false }.against(step, evidence, 0.9);
         assert_eq!((happened(10.1), happened(10.0)), (None, Some(Against::Chance)));
         assert_eq!(against("force-step", -0.1, 0.5, 9e-3), None, "it did not happen there");
-        assert_eq!(against("force-step", 0.3, 0.5, 0.4), None, "others show it");
+        assert_eq!(against("force-step", 0.3, 0.5, 0.19), None, "others show it");
     }
 
     #[test]
-    fn what_chance_gives_as_often_is_no_evidence_whatever_others_show() {
-        assert_eq!(against("pressure-lag", 0.9, 0.9, 0.5), Some(Against::Chance));
+    fn what_chance_gives_often_is_no_evidence_whatever_others_show() {
+        assert_eq!(against("pressure-lag", 0.9, 0.9, 0.2), Some(Against::Chance));
     }
 
     #[test]
@@ -266,7 +267,7 @@ mod tests {
         let little = |id: &str, evidence: f64, chance: f64| {
             Shown { share: 0.1, own: 0.1, is_surely_there: true }.against(effect(id).expect("an id"), evidence, chance)
         };
-        assert_eq!(little("pressure-lag", FAINT, 0.4), None, "what is small may be surely there");
+        assert_eq!(little("pressure-lag", FAINT, 0.19), None, "what is small may be surely there");
         assert_eq!(
             little("pressure-lag", 6.0, 1e-9),
             Some(Against::Chance),

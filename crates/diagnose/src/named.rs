@@ -146,6 +146,8 @@ pub(crate) fn candidates(found: &Found, besides: &[&str]) -> Vec<Candidate> {
                 "chance may have given it".to_owned()
             } else if found.stand_ins.contains(&id) {
                 "gains something, and leaves far more than it explains".to_owned()
+            } else if found.outdone.contains(&id) {
+                "another effect, which does not stand, explains more".to_owned()
             } else if found.unheard_of.contains(&id) {
                 "fits only with a shape that nothing published has".to_owned()
             } else if found.replaced.contains(&id) {

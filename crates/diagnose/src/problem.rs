@@ -137,7 +137,8 @@ impl<'a> DiagnosisProblem<'a> {
         for step in steps.into_iter().filter(|step| step.all_instants_n > matters_n) {
             let track = step.taken_off(outcome.track.clone(), muscle);
             let (found, sizes) = beside.search(&track, looked)?;
-            if left(&found) < least.min(step.may_leave(before, &named)) {
+            let is_possible = !step.is_spoken_against(&found.best.held_out);
+            if is_possible && left(&found) < least.min(step.may_leave(before, &named)) {
                 least = left(&found);
                 let step = step.compared(&found.best.held_out);
                 let besides = Besides { step: Some(step), ..outcome.besides.clone() };

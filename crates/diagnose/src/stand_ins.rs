@@ -9,7 +9,7 @@ use crate::search::{Found, Judged, Limits, judged};
 use crate::state::Setting;
 use crate::structure::{Feature, ProjectedResidual};
 use crate::trial::wants_another;
-use crate::verdict::Sizes;
+use crate::verdict::{Sizes, alternatives};
 use crate::veto::{stands_on_evidence, stands_unheard_of};
 
 /// Share of the whole mismatch that structure over one coordinate must hold before it is asked what stands in for it.
@@ -129,6 +129,35 @@ pub(crate) fn let_go_of_ends(setting: &Setting<'_>, found: &mut Found) -> bool {
         }
     }
     any
+}
+
+/// Lets go of the one name of `found` where another effect with a memory explained more in the first look: that one does not stand, as
+/// held-out recordings deny it or only its beginnings gain, and what was taken is the next that resembles what is there. Whether it did.
+/// Not where the two are said not to be told apart. Of some 190 such names in 500 cases that were looked at eight were outdone so, all of
+/// them wrong; of names beside others seven, of which five were right.
+pub(crate) fn let_go_of_outdone(setting: &Setting<'_>, found: &mut Found) -> bool {
+    let [only] = found.best.state.guesses.as_slice() else { return false };
+    let id = only.id();
+    if !has_memory(only) || !is_outdone(found, id) || !found.let_go(setting, 0) {
+        return false;
+    }
+    found.outdone.push(id);
+    true
+}
+
+fn has_memory(guess: &CandidateEffect) -> bool {
+    !guess.effect.is_static() && guess.effect.kind() != Kind::Event
+}
+
+/// Whether another effect with a memory than `id`, the only one named, explained more in the first look, whatever either was charged.
+fn is_outdone(found: &Found, id: &str) -> bool {
+    let rivals = alternatives(found, 0);
+    let evidence = |is_wanted: &dyn Fn(&str) -> bool| {
+        let wanted = found.first.iter().filter(|trial| has_memory(&trial.guess) && is_wanted(trial.guess.id()));
+        wanted.map(|trial| trial.before.log_ratio(&trial.held_out)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let own = evidence(&|other| other == id);
+    own.is_finite() && evidence(&|other| other != id && !rivals.contains(&other)) > own
 }
 
 #[cfg(test)]

@@ -67,7 +67,8 @@ impl Standing {
         }
         let too_short = short::let_go(&setting, &mut found, limits, lasts_s);
         let is_not_borne_out = held.is_some_and(|held| borne_out::let_go_of_others(&setting, &mut found, held));
-        if !too_short.is_empty() || is_not_borne_out {
+        let is_outdone = besides.is_empty() && stand_ins::let_go_of_outdone(&setting, &mut found);
+        if !too_short.is_empty() || is_not_borne_out || is_outdone {
             sizes = Sizes::of(&found, limits).with(besides_n);
         }
         Ok(Self { track, found, besides, sizes, too_short })

@@ -96,6 +96,8 @@ pub struct Found {
     pub stand_ins: Vec<&'static str>,
     /// Ids of what was taken and let go of again, as it fits only with a shape that nothing published has.
     pub unheard_of: Vec<&'static str>,
+    /// Ids of what was taken and let go of again, as another effect, which does not stand, explains more.
+    pub outdone: Vec<&'static str>,
     /// Ids of what was taken and let go of again, as a term without a name takes its place.
     pub replaced: Vec<&'static str>,
     /// Ids of static effects that stand for the static map.
@@ -269,6 +271,7 @@ pub fn search(
         nuisance,
         form_square: form_square(limits.sensor_floor_n, seen.force_n.1 - seen.force_n.0, FORM_AT_MOST),
         stand_ins: Vec::new(),
+        outdone: Vec::new(),
         unheard_of: Vec::new(),
         replaced: Vec::new(),
         of_the_map: parsimonious,

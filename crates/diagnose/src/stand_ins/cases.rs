@@ -7,6 +7,7 @@ use crate::hypothesis::{Beginning, Sign};
 use crate::joint::HeldOut;
 use crate::rehearsal::tests::Given;
 use crate::search::{Taken, search};
+use crate::trial::Trial;
 
 /// Recordings of a muscle with a lag, and a search of them that took `guess`.
 struct Desk {
@@ -88,6 +89,35 @@ fn a_shape_where_nothing_published_is_has_no_name() {
     assert_eq!(let_go_of(0.0, true), (false, false));
     assert_eq!(let_go_of(20.1, false), (false, false));
     assert_eq!(let_go_of(19.9, false), (true, true));
+}
+
+#[test]
+fn the_only_name_goes_where_another_effect_with_a_memory_explained_more_and_is_not_its_alternative() {
+    let lag = || guess("pressure-lag", &[0.15, 0.0]);
+    let held = |square: f64| HeldOut { blocks: vec![square], counts: vec![1.0], floor_square: 0.0 };
+    let trial = |guess: CandidateEffect, log_ratio: f64| {
+        let (before, held_out) = (held(log_ratio.exp()), held(1.0));
+        Trial { guess, mean_square: 1.0, before, held_out, log_ratio: 0.0 }
+    };
+    // Where the lag had evidence of 10 in the first look, and another one so much.
+    let kept = |guesses: Vec<CandidateEffect>, other: CandidateEffect, log_ratio: f64, is_alternative: bool| {
+        Desk::new().ask(guesses, |setting, mut found, _| {
+            let rival = Trial { log_ratio: 99.0, ..trial(other.clone(), log_ratio) };
+            let rivals = if is_alternative { vec![rival] } else { Vec::new() };
+            found.first = vec![trial(lag(), 10.0), trial(other, log_ratio)];
+            found.taken = vec![Taken { without: held(10.0), with: held(1.0), rivals, is_confirmed: true }];
+            let let_go = let_go_of_outdone(setting, &mut found);
+            assert_eq!(let_go, !found.outdone.is_empty());
+            ids(&found)
+        })
+    };
+    let damping = || guess("viscous-damping", &[]);
+    assert_eq!(kept(vec![lag()], damping(), 10.1, false), Vec::<&str>::new());
+    assert_eq!(kept(vec![lag()], damping(), 9.9, false), ["pressure-lag"]);
+    assert_eq!(kept(vec![lag()], damping(), 10.1, true), ["pressure-lag"], "it is said that they are not told apart");
+    assert_eq!(kept(vec![lag()], guess("slack", &[0.1]), 99.0, false), ["pressure-lag"], "a static one is no rival");
+    let two = vec![lag(), damping()];
+    assert_eq!(kept(two, guess("channel-delay", &[0.1, 0.0]), 99.0, false), ["pressure-lag", "viscous-damping"]);
 }
 
 /// What is left of `guesses` where `share` of the mismatch is unexplained and `left` of it structured; `confirmed` says of the
