@@ -22,8 +22,15 @@ pub struct Trial {
     pub before: HeldOut,
     /// Mean squares over held-out blocks.
     pub held_out: HeldOut,
-    /// `Σ ln(without / with)` over held-out blocks.
+    /// Its evidence, `Σ ln(without / with)` over held-out blocks, less what it is charged.
     pub log_ratio: f64,
+}
+
+impl Trial {
+    /// Its evidence, whatever it is charged.
+    pub(crate) fn uncharged(&self) -> f64 {
+        self.before.log_ratio(&self.held_out)
+    }
 }
 
 /// Candidates whose shapes are refined before they are compared.
@@ -217,8 +224,7 @@ pub(crate) fn restore_leaders(trials: &mut [Trial]) {
             let is_share = is_degenerate(guess.effect, &guess.shape) && !wants_another(guess.effect, &guess.shape);
             let whole = if is_share { log_ratio / DEGENERATE_CHARGE } else { *log_ratio };
             let others = trials.iter().filter(|other| other.guess.id() != guess.id());
-            // Whatever others were charged.
-            let nearest = others.map(|other| other.before.log_ratio(&other.held_out)).fold(0.0, f64::max);
+            let nearest = others.map(Trial::uncharged).fold(0.0, f64::max);
             if whole > FAR_AHEAD * nearest { whole } else { *log_ratio }
         })
         .collect();
