@@ -16,6 +16,8 @@ use crate::track::Track;
 pub(crate) const OF_THE_FIT: [Group; 2] = [Group::Reversal, Group::Form];
 /// What it carries only where that helps.
 const MAP: [Group; 2] = [Group::EvenMap, Group::OddMap];
+/// How much less a static map may be drawn to zero than in the search, in which what it follows could hide an effect.
+const LOOSER: [f64; 2] = [0.1, 0.01];
 /// Both.
 const OF_ALL: [Group; 4] = [Group::Reversal, Group::Form, Group::EvenMap, Group::OddMap];
 
@@ -24,6 +26,17 @@ const OF_ALL: [Group; 4] = [Group::Reversal, Group::Form, Group::EvenMap, Group:
 ///
 /// None where nothing is better than what was found.
 pub(crate) fn leaves_least(setting: &Setting<'_>, found: &Found, held: Option<&Track>) -> Option<(State, Nuisance)> {
+    let least = of_the_fewest(setting, found, held);
+    let looser = held.and_then(|held| {
+        let (state, nuisance) =
+            least.as_ref().map_or((&found.best.state, &found.nuisance), |(state, nuisance)| (state, nuisance));
+        looser(setting, found, held, state, nuisance)
+    });
+    looser.or(least)
+}
+
+/// The same as the search has it, or without some of what is beside it.
+fn of_the_fewest(setting: &Setting<'_>, found: &Found, held: Option<&Track>) -> Option<(State, Nuisance)> {
     let best = &found.best.state;
     let left_n = |state: &State, nuisance: &Nuisance| {
         Left::of(&carried(setting, found, state, nuisance), held.unwrap_or(setting.track)).together_n()
@@ -36,6 +49,27 @@ pub(crate) fn leaves_least(setting: &Setting<'_>, found: &Found, held: Option<&T
         .map(|(state, nuisance)| (left_n(&state, &nuisance), state, nuisance))
         .min_by(|one, other| one.0.total_cmp(&other.0))?;
     (least.0 < left_n(best, &found.nuisance)).then_some((least.1, least.2))
+}
+
+/// `state` beside `nuisance` with its static map drawn to zero less; none where the recordings `held` are not surely followed better so.
+fn looser(
+    setting: &Setting<'_>,
+    found: &Found,
+    held: &Track,
+    state: &State,
+    nuisance: &Nuisance,
+) -> Option<(State, Nuisance)> {
+    let left = |state: &State, nuisance: &Nuisance| Left::of(&carried(setting, found, state, nuisance), held);
+    let before = left(state, nuisance);
+    let others = LOOSER.into_iter().filter_map(|factor| {
+        let nuisance = nuisance.tightened(factor);
+        let setting = setting.beside(&nuisance);
+        let state = setting.fit_near(state.guesses.clone(), state)?;
+        let after = left(&state, &nuisance);
+        before.is_surely_bettered_by(&after).then(|| (after.together_n(), state, nuisance))
+    });
+    let (_, state, nuisance) = others.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    Some((state, nuisance))
 }
 
 /// Models of `guesses` beside the base, as they would be written: each beside others of the nuisances that were in; the static map is among
