@@ -42,9 +42,9 @@ const SHOWN: f64 = 0.5;
 /// Evidence within what was fitted that no chance gives, together with [`NO_CHANCE`]: hold-outs that are followed worse with a name then
 /// say that something is wrong there, and not that it is no name. Of 1,000 cases that were looked at, twelve right names have it that were
 /// denied so, and no wrong one.
-const OVERWHELMING: f64 = 16.0;
+pub(crate) const OVERWHELMING: f64 = 16.0;
 /// See [`OVERWHELMING`].
-const NO_CHANCE: f64 = 1e-3;
+pub(crate) const NO_CHANCE: f64 = 1e-3;
 /// The same of a static effect, since a misfit of eq. 11 is there in every block: of the same cases three right names and none that is
 /// wrong.
 const NO_CHANCE_OF_STATIC: f64 = 1e-9;

@@ -133,4 +133,19 @@ mod tests {
         assert!(has_map(6.0).is_some());
         assert!(has_map(0.0).is_none());
     }
+
+    #[test]
+    fn a_map_is_drawn_to_zero_less_where_other_recordings_are_surely_followed_better_so() {
+        let fitted = missed("isobaric-triangles", 40.0);
+        let limits = Limits { confirmed: true, ..Limits::of_test(0, 0.3) };
+        let setting = Setting { floor_square: 0.09, ..fitted.setting() };
+        let found = search(&setting, &fitted.start, &fitted.model, &limits, &|| {}).expect("a search");
+        // As a search has it that had to draw it more.
+        let nuisance = found.nuisance.tightened(100.0);
+        let state = setting.beside(&nuisance).fit_near(Vec::new(), &found.best.state).expect("a fit");
+        let freed = |held: &Given| looser(&setting, &found, &held.track, &state, &nuisance);
+        let (loose, _) = freed(&missed("isobaric-triangles", 40.0)).expect("a looser map");
+        assert!(loose.fit.mean_square < state.fit.mean_square);
+        assert!(freed(&missed("isobaric-triangles", 0.0)).is_none());
+    }
 }

@@ -177,6 +177,7 @@ pub(crate) fn limits(
         matters_above_n: config.matters_above_n,
         sensor_floor_n: noise_floor_n(estimation, &model.force_model())?,
         confirmed,
+        only: None,
     })
 }
 

@@ -148,6 +148,8 @@ pub(crate) fn candidates(found: &Found, besides: &[&str]) -> Vec<Candidate> {
                 "gains something, and leaves far more than it explains".to_owned()
             } else if found.outdone.contains(&id) {
                 "another effect, which does not stand, explains more".to_owned()
+            } else if let Some((_, force)) = found.nameless.iter().find(|(taken_for, _)| *taken_for == id) {
+                format!("{force} explains more, and is none of the catalogue")
             } else if found.unheard_of.contains(&id) {
                 "fits only with a shape that nothing published has".to_owned()
             } else if found.replaced.contains(&id) {

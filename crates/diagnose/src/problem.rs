@@ -174,6 +174,20 @@ impl<'a> DiagnosisProblem<'a> {
         Ok(self.without(excluded.iter().copied()).search(track, &|| {})?.0)
     }
 
+    /// The same, considering the effect `id` alone.
+    pub(crate) fn of_one(&self, id: &'static str) -> Self {
+        Self::new(self.estimation, self.model, Limits { only: Some(id), ..self.limits.clone() })
+    }
+
+    /// Searches `track`, for nothing beside what the search finds.
+    ///
+    /// # Errors
+    /// As [`DiagnosisProblem::answer`].
+    pub(crate) fn answer_alone(&self, track: &Track) -> Result<SearchOutcome, DiagnoseError> {
+        let (found, sizes) = self.search(track, &|| {})?;
+        Ok(SearchOutcome { track: track.clone(), found, besides: Besides::default(), sizes })
+    }
+
     fn search(&self, track: &Track, looked: &dyn Fn()) -> Result<(Found, Sizes), DiagnoseError> {
         let start = base::coordinates(self.model, &self.space);
         let found =

@@ -154,7 +154,7 @@ fn is_outdone(found: &Found, id: &str) -> bool {
     })
 }
 
-fn has_memory(effect: &dyn Effect) -> bool {
+pub(crate) fn has_memory(effect: &dyn Effect) -> bool {
     !effect.is_static() && effect.kind() != Kind::Event
 }
 

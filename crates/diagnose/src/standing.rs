@@ -6,7 +6,9 @@ use pam_artifact::diagnosis::{Region, Verdict};
 use crate::besides::Besides;
 use crate::borne_out;
 use crate::error::DiagnoseError;
+use crate::leader::leader;
 use crate::mass::MovingMass;
+use crate::nameless;
 use crate::places::{structured, telling};
 use crate::problem::{DiagnosisProblem, SearchOutcome};
 use crate::search::Found;
@@ -33,11 +35,32 @@ pub(crate) struct Standing {
 }
 
 impl Standing {
-    /// What stands of `outcome`, where `held` is what was held out, without the pull of a mass that swings.
+    /// What stands of `outcome`, where `held` is what was held out, without the pull of a mass that swings; where nothing does, of the
+    /// effect that explained most.
     ///
     /// # Errors
     /// [`DiagnoseError::Undetermined`] where the samples do not determine a fit.
     pub(crate) fn of(
+        question: &DiagnosisProblem<'_>,
+        outcome: SearchOutcome,
+        held: Option<&Track>,
+    ) -> Result<Self, DiagnoseError> {
+        let standing = Self::of_taken(question, outcome, held)?;
+        let leads = if standing.besides.is_empty() { leader(&standing.found) } else { None };
+        let (Some(leads), Some(held)) = (leads, held) else { return Ok(standing) };
+        let question = question.of_one(leads.guess.id());
+        let mut outcome = question.answer_alone(&standing.track)?;
+        // Its evidence is that of the look at all of the catalogue.
+        for taken in &mut outcome.found.taken {
+            (taken.without, taken.with) = (leads.before.clone(), leads.held_out.clone());
+        }
+        outcome.found.first.clone_from(&standing.found.first);
+        let alone = Self::of_taken(&question, outcome, Some(held))?;
+        Ok(if alone.found.best.state.guesses.is_empty() { standing } else { alone })
+    }
+
+    /// What stands of `outcome` as it is.
+    fn of_taken(
         question: &DiagnosisProblem<'_>,
         outcome: SearchOutcome,
         held: Option<&Track>,
@@ -68,7 +91,8 @@ impl Standing {
         let too_short = short::let_go(&setting, &mut found, limits, lasts_s);
         let is_not_borne_out = held.is_some_and(|held| borne_out::let_go_of_others(&setting, &mut found, held));
         let is_outdone = besides.is_empty() && stand_ins::let_go_of_outdone(&setting, &mut found);
-        if !too_short.is_empty() || is_not_borne_out || is_outdone {
+        let is_nameless = nameless::let_go(&setting, &mut found);
+        if !too_short.is_empty() || is_not_borne_out || is_outdone || is_nameless {
             sizes = Sizes::of(&found, limits).with(besides_n);
         }
         Ok(Self { track, found, besides, sizes, too_short })

@@ -112,7 +112,7 @@ pub(super) struct Look<'a> {
 
 impl Look<'_> {
     fn allows(&self, id: &str) -> bool {
-        !self.limits.excluded.iter().any(|excluded| excluded == id)
+        self.limits.allows(id)
     }
 
     /// Every effect that `best` does not have, on top of it; best first. Beside a map that bends, a static effect is one more
@@ -146,6 +146,9 @@ impl Look<'_> {
         // Beside what was named before, it may be what is left of that, and what was excluded may come nearer.
         if best.state.guesses.is_empty() && self.limits.excluded.is_empty() {
             trial::restore_leaders(&mut tried);
+        }
+        if self.limits.only.is_some() {
+            tried.iter_mut().for_each(|trial| trial.log_ratio = trial.uncharged());
         }
         Some(tried)
     }

@@ -45,6 +45,15 @@ pub struct Limits {
     pub sensor_floor_n: f64,
     /// Whether held-out recordings will confirm or deny what is named.
     pub confirmed: bool,
+    /// The one effect that is considered, whatever it would be charged beside others; all of them where there is none.
+    pub only: Option<&'static str>,
+}
+
+impl Limits {
+    /// Whether the effect `id` is considered.
+    fn allows(&self, id: &str) -> bool {
+        self.only.is_none_or(|only| only == id) && !self.excluded.iter().any(|excluded| excluded == id)
+    }
 }
 
 #[cfg(test)]
@@ -52,7 +61,7 @@ impl Limits {
     /// Of a test: at most `max_effects` of the catalogue, in recordings whose sensors leave `sensor_floor_n`; nothing is held out.
     pub(crate) fn of_test(max_effects: usize, sensor_floor_n: f64) -> Self {
         let (excluded, own) = (Vec::new(), Vec::new());
-        Self { max_effects, excluded, own, matters_above_n: None, sensor_floor_n, confirmed: false }
+        Self { max_effects, excluded, own, matters_above_n: None, sensor_floor_n, confirmed: false, only: None }
     }
 }
 
@@ -98,6 +107,8 @@ pub struct Found {
     pub unheard_of: Vec<&'static str>,
     /// Ids of what was taken and let go of again, as another effect, which does not stand, explains more.
     pub outdone: Vec<&'static str>,
+    /// Ids of what was taken and let go of again, as a force that the catalogue has no name for explains more; each with that force, in words.
+    pub nameless: Vec<(&'static str, &'static str)>,
     /// Ids of what was taken and let go of again, as a term without a name takes its place.
     pub replaced: Vec<&'static str>,
     /// Ids of static effects that stand for the static map.
@@ -266,12 +277,13 @@ pub fn search(
         coordinates,
         features,
         floor_square,
-        looked_at_all: limits.excluded.is_empty(),
+        looked_at_all: limits.excluded.is_empty() && limits.only.is_none(),
         left,
         nuisance,
         form_square: form_square(limits.sensor_floor_n, seen.force_n.1 - seen.force_n.0, FORM_AT_MOST),
         stand_ins: Vec::new(),
         outdone: Vec::new(),
+        nameless: Vec::new(),
         unheard_of: Vec::new(),
         replaced: Vec::new(),
         of_the_map: parsimonious,
