@@ -24,6 +24,7 @@ fn main() {
         own: Vec::new(),
         matters_above_n: None,
         sensor_floor_n: model.fit.noise_floor_n,
+        only: None,
         confirmed: false,
     };
     let question = DiagnosisProblem::new(&prepared, &model, limits);

@@ -47,8 +47,9 @@ const WANDERS: &str = r#"
 /// Knots of that over the longest recording.
 const KNOTS: usize = 7;
 
-/// Evidence that the force must have beyond that of the effect: as if one block more were explained. Of COUNT looked-at cases with such a
-/// name eight wrong ones go by it, all nameless, and a right one; with its double the same, with half of it a wrong and a right one more.
+/// Evidence that the force must have beyond that of the effect: as if one block more were explained. Of 106 looked-at cases with such a
+/// name nine wrong ones go by it, eight of them nameless, and a right one; with its double the same ones, with half of it a wrong one and
+/// two right ones more.
 const CLEARLY: f64 = 1.5;
 
 /// Lets go of every effect of `found` in whose place a force without a name clearly foretells more. Whether there was any.
