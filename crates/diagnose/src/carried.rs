@@ -16,10 +16,11 @@ use crate::track::Track;
 pub(crate) const OF_THE_FIT: [Group; 2] = [Group::Reversal, Group::Form];
 /// What it carries only where that helps.
 const MAP: [Group; 2] = [Group::EvenMap, Group::OddMap];
-/// How much less a static map may be drawn to zero than in the search, in which what it follows could hide an effect.
-const LOOSER: [f64; 2] = [0.1, 0.01];
 /// Both.
 const OF_ALL: [Group; 4] = [Group::Reversal, Group::Form, Group::EvenMap, Group::OddMap];
+
+/// How much less a static map may be drawn to zero than in the search, in which what it follows could hide an effect.
+const LOOSER: [f64; 2] = [0.1, 0.01];
 
 /// What was found in `setting`, fitted as a model carries it, and what is then in beside it: what leaves least of the force of
 /// `held` over all samples. Without `held` the recordings of the fit judge, which cannot tell whether a map foretells anything.
@@ -59,6 +60,9 @@ fn looser(
     state: &State,
     nuisance: &Nuisance,
 ) -> Option<(State, Nuisance)> {
+    if nuisance.without(&MAP).n() == nuisance.n() {
+        return None;
+    }
     let left = |state: &State, nuisance: &Nuisance| Left::of(&carried(setting, found, state, nuisance), held);
     let before = left(state, nuisance);
     let others = LOOSER.into_iter().filter_map(|factor| {

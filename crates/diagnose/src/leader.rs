@@ -7,7 +7,7 @@
 use pam_muscle::effects::Effect;
 
 use crate::borne_out::{NO_CHANCE, OVERWHELMING};
-use crate::search::{Found, chance};
+use crate::search::Found;
 use crate::stand_ins::has_memory;
 use crate::trial::Trial;
 
@@ -23,8 +23,7 @@ pub(crate) fn leader(found: &Found) -> Option<&Trial> {
     let is_told = |effect: &dyn Effect| has_memory(effect) || effect.is_odd();
     let every = found.first.iter().filter(|trial| is_told(trial.guess.effect));
     let leads = every.max_by(|one, other| one.uncharged().total_cmp(&other.uncharged()))?;
-    let by_chance = chance(&leads.before, &leads.held_out) * found.first.len() as f64;
-    (leads.uncharged() >= OVERWHELMING && by_chance < NO_CHANCE).then_some(leads)
+    (leads.uncharged() >= OVERWHELMING && leads.by_chance(found.first.len()) < NO_CHANCE).then_some(leads)
 }
 
 #[cfg(test)]

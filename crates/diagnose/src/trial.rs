@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::events;
 use crate::hypothesis::{Beginning, CandidateEffect, n_amplitudes};
 use crate::joint::HeldOut;
+use crate::search::chance;
 use crate::state::{Setting, State};
 use crate::steps;
 
@@ -30,6 +31,11 @@ impl Trial {
     /// Its evidence, whatever it is charged.
     pub(crate) fn uncharged(&self) -> f64 {
         self.before.log_ratio(&self.held_out)
+    }
+
+    /// Probability that chance gives that to one of `looks` candidates.
+    pub(crate) fn by_chance(&self, looks: usize) -> f64 {
+        chance(&self.before, &self.held_out) * looks as f64
     }
 }
 

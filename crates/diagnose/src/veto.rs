@@ -16,7 +16,7 @@ use crate::held_error::Left;
 use crate::hypothesis::{Beginning, CandidateEffect};
 use crate::nuisance::Nuisance;
 use crate::problem::DiagnosisProblem;
-use crate::search::{Found, chance};
+use crate::search::Found;
 use crate::state::{Setting, State};
 use crate::track::Track;
 use crate::uncertainty::{correlated_instants, jackknife_stderr};
@@ -67,12 +67,11 @@ fn leads_beyond_doubt(found: &Found, index: usize) -> bool {
     let guess = &found.best.state.guesses[index];
     let most = found.first.iter().max_by(|left, right| left.log_ratio.total_cmp(&right.log_ratio));
     most.is_some_and(|most| {
-        let by_chance = chance(&most.before, &most.held_out) * found.first.len() as f64;
         found.looked_at_all
             && guess.effect.outlasts()
             && most.guess.id() == guess.id()
             && most.log_ratio >= OVERWHELMING
-            && by_chance < UNLIKELY
+            && most.by_chance(found.first.len()) < UNLIKELY
             && found.evidence(index) > STANDS_ALONE
     })
 }
