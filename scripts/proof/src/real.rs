@@ -140,8 +140,8 @@ pub fn markdown(results: &[RealResult]) -> String {
         results.iter().map(|result| format!("- {}: {}\n", result.muscle.cut, result.statement)).collect();
     format!(
         "# Two real muscles, diagnosed\n\nWritten by `make prove-real`. Fitted to the four `test9` recordings of each muscle, \
-         judged on all samples of its four `test10` recordings, which also choose how freely the static map bends; parameters within physical bounds, the same settings for both. Boosted \
-         trees see the same signals and their past, and know no physics: they are the ceiling.\n\n{}\n{}",
+         judged on all samples of its four `test10` recordings, which also choose how freely the static map bends; parameters within \
+         physical bounds, the same settings for both. Boosted trees see the same signals and their past, and know no physics: they are the ceiling.\n\n{}\n{}",
         table(results).to_markdown(),
         statements.concat()
     )
