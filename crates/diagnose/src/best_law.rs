@@ -56,8 +56,8 @@ impl Recordings {
             let redirected = rig::track(&self.estimation, model, &self.rig)?;
             let other = DiagnosisProblem::new(&self.estimation, model, limits.clone()).answer(&redirected, advance)?;
             let left = |outcome: &SearchOutcome| outcome.found.best.held_out.mean_square();
-            // What judges names judges laws as well.
-            if left(&other) >= left(&best) || self.held_n(&other, model.direction)? > before_n {
+            let held_n = [before_n, self.held_n(&other, model.direction)?];
+            if !follows_better([left(&best), left(&other)], (!self.holdout.is_empty()).then_some(held_n)) {
                 self.redirect(model, before)?;
                 break;
             }
@@ -75,6 +75,15 @@ impl Recordings {
         let together = evaluate_augmented(&self.holdout, &augmented, direction)?.together;
         Ok(together.map_or(0.0, |together| together.rmse_all_n))
     }
+}
+
+/// Whether another law follows the recordings better than the one before, of which `left_square` is left in blocks that were held out,
+/// in N², and `held_n` in recordings that were, in N. What judges names judges laws as well; and blocks alone would keep a wrong law
+/// beside an effect that is free enough to make up for it there.
+fn follows_better(left_square: [f64; 2], held_n: Option<[f64; 2]>) -> bool {
+    let [before_n, other_n] = held_n.unwrap_or([1.0; 2]);
+    let [before, other] = left_square;
+    other_n <= before_n && other * other_n.powi(2) < before * before_n.powi(2)
 }
 
 #[cfg(test)]
@@ -134,6 +143,16 @@ mod tests {
         let mut recordings = Recordings { estimation, holdout, rig: Vec::new() };
         recordings.under_best_law(&mut model, &limits, track, &|| {}).expect("a search");
         model.direction.standstill
+    }
+
+    #[test]
+    fn a_law_is_better_where_blocks_and_recordings_are_followed_better_together_and_recordings_no_worse() {
+        assert!(follows_better([4.0, 3.9], None));
+        assert!(!follows_better([4.0, 4.0], None));
+        assert!(follows_better([4.0, 3.9], Some([3.0, 3.0])));
+        assert!(!follows_better([4.0, 1.0], Some([3.0, 3.1])), "held-out recordings are followed worse");
+        assert!(follows_better([4.0, 5.0], Some([3.0, 2.0])), "they are followed much better");
+        assert!(!follows_better([4.0, 5.0], Some([3.0, 2.9])), "they are followed little better");
     }
 
     #[test]

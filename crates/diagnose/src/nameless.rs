@@ -4,6 +4,7 @@
 //! |----------------------------------------------------------------|-------------------------------------|--------------------------------------------|
 //! | what sticks in the path of the load, a swivel under the torque of the braid | hysteresis of the gauge, creep | an error of the pressure goes with `∂F/∂p`, and creep goes on while the pressure stands; this does neither |
 //! | a length that wanders: a clamp that creeps, strands that swell | what goes on in time: drift, wear, warming, softening, creep, relaxation | an error of the length goes with `∂F/∂L` |
+//! | friction whose coefficient changes with the contraction        | friction that grows with the load, beside another name | the load does not vanish with the pressure |
 //!
 //! Each is a sentence of the grammar. Where it foretells held-out blocks better than the effect does, that is no name.
 
@@ -47,10 +48,32 @@ const WANDERS: &str = r#"
 /// Knots of that over the longest recording.
 const KNOTS: usize = 7;
 
+/// Friction of another coefficient, but for its knots.
+const SLIDES: &str = r#"
+    [[effect]]
+    id = "friction-by-contraction"
+    name = "friction whose coefficient changes with the contraction"
+    summary = "The strands rub otherwise where the muscle is thick than where it is thin."
+    source = "Coulomb friction of a braid whose angle changes"
+    driver = "contraction"
+    scale = "friction"
+    amplitude = [-1.0, 1.0]
+"#;
+
+/// Knots of that over the contraction: enough for a bend.
+const BENDS: usize = 3;
+
+/// Friction whose coefficient changes between `low` and `high` contraction.
+pub(crate) fn friction_by_contraction([low, high]: [f64; 2]) -> &'static dyn Effect {
+    let knots: Vec<f64> = (0..BENDS).map(|knot| low + (high - low) * knot as f64 / (BENDS - 1) as f64).collect();
+    let text = format!("{SLIDES}shape = {{ spline = {{ knots = {knots:?} }} }}\n");
+    custom_effects(&text).expect("a sentence of the grammar")[0]
+}
+
 /// Evidence that the force must have beyond that of the effect: as if one block more were explained. Of 106 looked-at cases with such a
 /// name nine wrong ones go by it, eight of them nameless, and a right one; with its double the same ones, with half of it a wrong one and
 /// two right ones more.
-const CLEARLY: f64 = 1.5;
+pub(crate) const CLEARLY: f64 = 1.5;
 
 /// Lets go of every effect of `found` in whose place a force without a name clearly foretells more. Whether there was any.
 pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found) -> bool {

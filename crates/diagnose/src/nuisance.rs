@@ -376,7 +376,7 @@ fn scale(squares: f64, count: f64) -> f64 {
 }
 
 /// Lowest and highest of `values` over what counts.
-fn range(values: &[f64], counted: &[bool]) -> (f64, f64) {
+pub(crate) fn range(values: &[f64], counted: &[bool]) -> (f64, f64) {
     let kept = values.iter().zip(counted).filter(|(_, counted)| **counted);
     kept.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, _)| (low.min(*value), high.max(*value)))
 }

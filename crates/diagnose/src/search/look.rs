@@ -1,5 +1,6 @@
 //! A look at the catalogue on top of what was taken.
 
+use pam_muscle::Coordinate;
 use pam_muscle::effects::{Effect, Role, Seen};
 
 use super::ends::{self, Ends};
@@ -9,7 +10,8 @@ use super::{Judged, Limits, again};
 use crate::coordinates::Coordinates;
 use crate::forms::Forms;
 use crate::hypothesis::{Beginning, CandidateEffect};
-use crate::nuisance::{Group, Nuisance};
+use crate::nameless::{CLEARLY, friction_by_contraction};
+use crate::nuisance::{Group, Nuisance, range};
 use crate::plausible::strains;
 use crate::state::Setting;
 use crate::trial::{self, Shapes, Trial};
@@ -196,12 +198,24 @@ impl Look<'_> {
         let matters = self.limits.matters_above_n.map_or(0.0, |limit_n| limit_n * limit_n);
         let frictions = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static() && effect.is_odd();
         let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &frictions);
+        // Beside another effect it is likelier that eq. 11 lacks the shape of the friction than that two effects are there.
+        let is_beside = !best.state.guesses.is_empty();
+        let least = if is_beside { self.friction_by_contraction(&beside, &bare) + CLEARLY } else { 0.0 };
         let stands = |trial: &&Trial| {
             let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
-            gained > matters && gained > OF_THE_ODD * odd && trial.log_ratio > ODD_LOG_RATIO
+            gained > matters && gained > OF_THE_ODD * odd && trial.log_ratio > ODD_LOG_RATIO.max(least)
         };
         let named = settle(&beside, &bare, trials.iter().find(stands)?)?;
         again(&self.plain.beside(&even), &named)
+    }
+
+    /// Evidence for friction whose coefficient changes with the contraction, beside `bare`.
+    fn friction_by_contraction(&self, beside: &Setting<'_>, bare: &Judged) -> f64 {
+        let (low, high) = range(self.coordinates.of_kind(Coordinate::Contraction), &beside.track.counted);
+        let force = [friction_by_contraction([low, high])];
+        let setting = Setting { effects: &force, ..*beside };
+        let tried = trial::among(&setting, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &|_| true);
+        tried.first().map_or(0.0, |trial| trial.log_ratio)
     }
 
     /// `best` beside other forms of what was named: what is left of an effect is none of the map's.

@@ -1,6 +1,6 @@
 use super::*;
 
-use pam_muscle::effects::effect;
+use pam_muscle::effects::{Moment, effect};
 
 use crate::hypothesis::Sign;
 use crate::joint::HeldOut;
@@ -8,6 +8,8 @@ use crate::rehearsal::tests::Given;
 use crate::search::judged;
 
 const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
+
+const LAG: (&str, &[f64], &[f64]) = ("pressure-lag", &[0.15, 0.0], &[]);
 
 /// What a look needs that stands still, of recordings whose sensors leave 0.3 N.
 struct Desk {
@@ -59,6 +61,15 @@ impl Desk {
     /// The friction that stands for the odd part of the map.
     fn odd_of_the_map(&self) -> Option<&'static str> {
         self.look(|look, base| Some(look.odd_static(&again(look.mapped, base)?)?.state.guesses[0].id()))
+    }
+
+    /// The same beside a lag that was named.
+    fn odd_beside_lag(&self) -> Option<&'static str> {
+        self.look(|look, base| {
+            let lag = self.given.guess(LAG.0, LAG.1);
+            let named = judged(look.mapped, look.mapped.fit_near(vec![lag], &base.state)?)?;
+            Some(look.odd_static(&named)?.state.guesses.last()?.id())
+        })
     }
 
     /// The effect that stands for the static map.
@@ -139,6 +150,20 @@ fn friction_under_load_is_found_whatever_eq_11_misses_of_a_static_force() {
     assert_eq!(found(&[], 15.0), None);
     // Friction of another shape is none of the load.
     assert_eq!(found(&[("viscous-damping", &[], &[120.0])], 0.0), None);
+}
+
+#[test]
+fn beside_a_name_friction_is_of_the_load_only_where_no_other_coefficient_does_as_well() {
+    let rubbing: (&'static str, &[f64], &[f64]) = ("load-dependent-friction", &[], &[0.05, 0.0]);
+    assert_eq!(Desk::of(&[LAG, rubbing]).odd_beside_lag(), Some("load-dependent-friction"));
+    let mut bent = Desk::of(&[LAG]);
+    assert_eq!(bent.odd_beside_lag(), None);
+    for instant in &mut bent.given.track.instants {
+        let Moment { pressure_pa, direction, contraction_ratio, .. } = instant.moment;
+        instant.force_n -= direction * 8e-5 * pressure_pa * (1.15 - 4.0 * contraction_ratio);
+    }
+    assert_eq!(bent.odd_beside_lag(), None);
+    assert_eq!(bent.odd_of_the_map(), Some("load-dependent-friction"), "alone it is the likelier one");
 }
 
 #[test]
