@@ -1,7 +1,7 @@
 //! Viscous damping: a force against the motion that grows with its speed.
 //!
 //! ```text
-//! F = F_base - c (p / p_ref)^m v
+//! F = F_base - (c₀ + c₁ p / p_ref) v
 //! ```
 
 use crate::coordinate::Coordinate;
