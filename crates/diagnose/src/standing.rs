@@ -92,7 +92,8 @@ impl Standing {
         let is_not_borne_out = held.is_some_and(|held| borne_out::let_go_of_others(&setting, &mut found, held));
         let is_outdone = besides.is_empty() && stand_ins::let_go_of_outdone(&setting, &mut found);
         let is_nameless = nameless::let_go(&setting, &mut found);
-        if !too_short.is_empty() || is_not_borne_out || is_outdone || is_nameless {
+        let is_of_turns = stand_ins::let_go_of_turns(&setting, &mut found);
+        if !too_short.is_empty() || is_not_borne_out || is_outdone || is_nameless || is_of_turns {
             sizes = Sizes::of(&found, limits).with(besides_n);
         }
         Ok(Self { track, found, besides, sizes, too_short })
