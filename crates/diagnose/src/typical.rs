@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn a_tare_of_each_recording_is_none_of_what_is_typically_left_up_to_half_a_percent_of_the_force() {
         let trace = |tare_n: f64| {
-            let swings_n = |at: usize| if at % 2 == 0 { 0.1 } else { -0.1 };
+            let swings_n = |at: usize| if at.is_multiple_of(2) { 0.1 } else { -0.1 };
             Trace {
                 force_n: (0..101).map(|at| 400.0 + tare_n + swings_n(at)).collect(),
                 model_n: vec![400.0; 101],
