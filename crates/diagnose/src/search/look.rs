@@ -198,15 +198,18 @@ impl Look<'_> {
         let matters = self.limits.matters_above_n.map_or(0.0, |limit_n| limit_n * limit_n);
         let frictions = |effect: &dyn Effect| self.allows(effect.page().id) && effect.is_static() && effect.is_odd();
         let trials = trial::among(&beside, &bare.state, &bare.held_out, self.seen, &Shapes::new(), &frictions);
+        let stands = |trial: &&Trial| {
+            let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
+            gained > matters && gained > OF_THE_ODD * odd && trial.log_ratio > ODD_LOG_RATIO
+        };
+        let friction = trials.iter().find(stands)?;
         // Beside another effect it is likelier that eq. 11 lacks the shape of the friction than that two effects are there. Of 13 looked-at
         // cases in which it stood so five wrong names and a right one go by that.
         let is_beside = !best.state.guesses.is_empty();
-        let least = if is_beside { self.friction_by_contraction(&beside, &bare) + CLEARLY } else { 0.0 };
-        let stands = |trial: &&Trial| {
-            let gained = bare.held_out.mean_square() - trial.held_out.mean_square();
-            gained > matters && gained > OF_THE_ODD * odd && trial.log_ratio > ODD_LOG_RATIO.max(least)
-        };
-        let named = settle(&beside, &bare, trials.iter().find(stands)?)?;
+        if is_beside && friction.log_ratio <= self.friction_by_contraction(&beside, &bare) + CLEARLY {
+            return None;
+        }
+        let named = settle(&beside, &bare, friction)?;
         again(&self.plain.beside(&even), &named)
     }
 
