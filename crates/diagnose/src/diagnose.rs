@@ -103,6 +103,8 @@ pub struct Diagnosis {
     pub typically_misses: bool,
     /// Where what was fitted is followed and what was held out is not: what one model of both leaves, if that follows all.
     pub pooled: Option<Pooled>,
+    /// Names that are none, by id, each with the force without a name that explains more.
+    pub nameless: Vec<(&'static str, &'static str)>,
     /// What the force does at one frequency while no drive does.
     pub periodic: Option<Periodic>,
     /// Base model refitted to the estimation recordings.
@@ -346,6 +348,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         sizes,
         typically_misses,
         pooled,
+        nameless: found.nameless.clone(),
         periodic,
         base,
         base_fitted,

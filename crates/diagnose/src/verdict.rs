@@ -107,6 +107,7 @@ pub fn verdict(found: &Found, sizes: &Sizes, besides: bool) -> Verdict {
         let is_missing = sizes.mismatch_n > sizes.matters_n || beyond_sensors || sizes.static_n.is_some();
         // What called up a name that is none is there.
         let is_missing = is_missing
+            || !found.nameless.is_empty()
             || [&found.stand_ins, &found.unheard_of, &found.outdone, &found.replaced]
                 .iter()
                 .any(|let_go_of| !let_go_of.is_empty());

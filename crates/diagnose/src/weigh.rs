@@ -32,6 +32,7 @@ impl Diagnosis {
         let numbers = self.numbers(agreement);
         self.unexplained_share = numbers.share_unexplained(&self.effects);
         self.statement = words::statement(self.verdict, &self.effects, &numbers, &self.regions, &self.unexplained);
+        self.statement += &words::nameless(&self.nameless);
         if let Some(empirical) = &mut self.empirical {
             let held = agreement.holdout_without_terms.as_ref().zip(agreement.holdout.together.as_ref());
             empirical.holdout =
@@ -123,6 +124,7 @@ impl Diagnosis {
             && !self.typically_misses
             && !self.swings()
             && self.effects.is_empty()
+            && self.nameless.is_empty()
             && self.empirical.is_none()
             && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)
             && agreement.estimation.each.iter().all(|fitted| fitted.rmse_n <= held::FAR * agreement.noise_floor_n)

@@ -152,6 +152,13 @@ pub(crate) fn statement(
     }
 }
 
+/// What `nameless`, forces that explain more than the names that they were taken for, act like; nothing where there are none.
+pub(crate) fn nameless(nameless: &[(&str, &str)]) -> String {
+    let name = |id: &str| effect(id).map_or_else(|| id.to_owned(), |effect| effect.page().name.to_owned());
+    let words = nameless.iter().map(|(id, force)| format!(" What looks like {} acts more like {force}.", name(id)));
+    words.collect()
+}
+
 /// What a smooth static map alone models, by what is left without it and with it of what was `held` out, or where nothing was of what
 /// was `fitted`, in N; nothing where that is no less.
 pub(crate) fn of_map(held: Option<(f64, f64)>, fitted: (f64, f64)) -> String {
@@ -253,6 +260,18 @@ mod tests {
         let beside = Numbers { with_map: true, n_terms: 2, ..numbers(1.5) };
         assert!(beside.gain(&[]).starts_with("with that, a smooth static map and empirical terms the RMSE falls"));
         assert_eq!(beside.share_unexplained(&[]), 1.0);
+    }
+
+    #[test]
+    fn a_force_without_a_name_is_said_beside_the_name_that_it_was_taken_for() {
+        let words =
+            nameless(&[("fatigue-wear", "a clamp that creeps under the load"), ("of-my-own", "a hose that kinks")]);
+        assert_eq!(
+            words,
+            " What looks like fatigue and wear acts more like a clamp that creeps under the load. What looks like of-my-own acts more \
+             like a hose that kinks."
+        );
+        assert_eq!(nameless(&[]), "");
     }
 
     #[test]
