@@ -1,12 +1,14 @@
 //! What happened once: whether it was the force that jumped, and whether what happened in the last of the recordings goes on in those
 //! after them.
 
-use pam_muscle::effects::{AugmentedModel, Kind, Moment};
+use pam_identification::search_space::SearchSpace;
+use pam_muscle::effects::{AugmentedModel, Kind, Moment, Term};
+use pam_muscle::force::ForceModel;
 
 use crate::design_matrix::Regressors;
 use crate::held_error::Left;
 use crate::hypothesis::{Beginning, CandidateEffect};
-use crate::nuisance::over_range;
+use crate::nuisance::{self, over_range};
 use crate::search::{Found, judged};
 use crate::state::{Setting, State};
 use crate::track::Track;
@@ -59,6 +61,44 @@ pub(crate) fn told_by(setting: &Setting<'_>, found: &mut Found, heldout: &Track)
             found.best = other;
         }
     }
+}
+
+/// Terms of `guesses` with their sizes beside `base` as it is, and no nuisances; none where the samples do not determine them.
+pub(crate) fn beside(setting: &Setting<'_>, guesses: &[CandidateEffect], base: &ForceModel) -> Option<Vec<Term>> {
+    let space = setting.space.clone();
+    let held = SearchSpace { free: Vec::new(), ranges: Vec::new(), held: *base.parameters(), ..space };
+    let fixed = Setting { space: &held, nuisance: &nuisance::NONE, ..*setting };
+    Some(fixed.fit(guesses.to_vec(), &[], base)?.terms())
+}
+
+/// Share of what is left beyond the noise of the sensors, mean square, that an event must take away from the fitted recordings once no
+/// tare of each makes up for it. Nothing that was held out can tell of what happened in one recording alone. Of 39 looked-at steps the
+/// 29 right ones take away 0.15 and more, as written; of the ten wrong ones two that stand in the search take away 0.01 at most.
+const LEAST_WRITTEN: f64 = 0.05;
+
+/// Lets go of events, where nothing else was found, that take next to nothing away from the fitted recordings as a model can be written
+/// with them: beside the base as `given` or the refitted one, without nuisances. Whether there was any.
+pub(crate) fn let_go_of_unseen(setting: &Setting<'_>, found: &mut Found, given: &ForceModel) -> bool {
+    let state = &found.best.state;
+    if state.guesses.is_empty() || state.guesses.iter().any(|guess| guess.effect.kind() != Kind::Event) {
+        return false;
+    }
+    let Some(terms) = beside(setting, &state.guesses, given) else { return false };
+    let left =
+        |base: &ForceModel, terms: Vec<Term>| setting.track.left_square(&AugmentedModel::new(base.clone(), terms));
+    let before = left(given, Vec::new()).min(left(&found.base.state.model, Vec::new()));
+    let after = left(given, terms).min(left(&state.model, state.terms()));
+    if before - after >= LEAST_WRITTEN * (before - setting.floor_square).max(0.0) {
+        return false;
+    }
+    let ids: Vec<&'static str> = state.guesses.iter().map(CandidateEffect::id).collect();
+    for (index, id) in ids.into_iter().enumerate().rev() {
+        if !found.let_go(setting, index) {
+            return false;
+        }
+        found.stand_ins.push(id);
+    }
+    true
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use pam_artifact::diagnosis::{Region, Verdict};
 use crate::besides::Besides;
 use crate::borne_out;
 use crate::error::DiagnoseError;
+use crate::events;
 use crate::leader::leader;
 use crate::mass::MovingMass;
 use crate::nameless;
@@ -93,7 +94,9 @@ impl Standing {
         let is_outdone = besides.is_empty() && stand_ins::let_go_of_outdone(&setting, &mut found);
         let is_nameless = nameless::let_go(&setting, &mut found);
         let is_of_turns = stand_ins::let_go_of_turns(&setting, &mut found);
-        if !too_short.is_empty() || is_not_borne_out || is_outdone || is_nameless || is_of_turns {
+        let given = question.model.force_model();
+        let is_unseen = besides.is_empty() && events::let_go_of_unseen(&setting, &mut found, &given);
+        if is_unseen || !too_short.is_empty() || is_not_borne_out || is_outdone || is_nameless || is_of_turns {
             sizes = Sizes::of(&found, limits).with(besides_n);
         }
         Ok(Self { track, found, besides, sizes, too_short })

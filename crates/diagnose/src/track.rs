@@ -127,6 +127,14 @@ impl Track {
         forces_n
     }
 
+    /// What `model` leaves of the counted instants: mean square, in N².
+    pub(crate) fn left_square(&self, model: &AugmentedModel) -> f64 {
+        let modelled_n = self.modelled_n(model);
+        let missed = self.instants.iter().zip(modelled_n).zip(&self.counted).filter(|(_, counted)| **counted);
+        let square: f64 = missed.map(|((instant, modelled_n), _)| (instant.force_n - modelled_n).powi(2)).sum();
+        square / self.n_counted().max(1) as f64
+    }
+
     /// The same instants with other `directions` of their recordings.
     #[must_use]
     pub fn redirected(&self, directions: &[Direction]) -> Self {

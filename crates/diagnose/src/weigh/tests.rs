@@ -70,6 +70,13 @@ fn hold_outs_that_the_base_follows_make_what_is_unexplained_consistent() {
     };
     assert_eq!(unexplained(1.9).verdict, Verdict::Consistent);
     assert_eq!(unexplained(2.1).verdict, Verdict::Unexplained);
+    let nameless = weighed(|found, agreement| {
+        found.verdict = Verdict::Unexplained;
+        found.nameless = vec![("fatigue-wear", "a clamp that creeps under the load")];
+        base_leaves(agreement, 1.9);
+    });
+    assert_eq!(nameless.verdict, Verdict::Unexplained, "a force without a name is there");
+    assert!(nameless.statement.contains("acts more like a clamp that creeps under the load"), "{}", nameless.statement);
     let without = weighed(|found, agreement| {
         found.verdict = Verdict::Unexplained;
         (agreement.base_holdout.together, agreement.holdout.together) = (None, None);
