@@ -99,7 +99,7 @@ pub(crate) fn friction_by_contraction([low, high]: [f64; 2]) -> &'static dyn Eff
 pub(crate) const CLEARLY: f64 = 1.5;
 /// The same of a force that has the effect as a limit, a hose that never kinks: twice that. Of 20 looked-at cases with a lag a kink
 /// gains 1.4 at most in the 18 that have one, and 50 and 77 in two hoses that kink.
-const CLEARLY_BEYOND: f64 = 2.0 * CLEARLY;
+const CLEARLY_BEYOND: f64 = 3.0;
 
 /// Lets go of every effect of `found` in whose place a force without a name clearly foretells more. Whether there was any.
 pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found) -> bool {

@@ -9,6 +9,7 @@ use pam_muscle::force::columns::ForceColumns;
 use crate::base;
 use crate::besides::Besides;
 use crate::error::DiagnoseError;
+use crate::events;
 use crate::mass::{self, MovingMass};
 use crate::nuisance::{self, Nuisance};
 use crate::resting_step::{self, RestingStep};
@@ -137,7 +138,7 @@ impl<'a> DiagnosisProblem<'a> {
         for step in steps.into_iter().filter(|step| step.all_instants_n > matters_n) {
             let track = step.taken_off(outcome.track.clone(), muscle);
             let (found, sizes) = beside.search(&track, looked)?;
-            let is_possible = !step.is_spoken_against(&found.best.held_out);
+            let is_possible = !step.is_spoken_against(&found.best.held_out) && self.shows(&step, &outcome, &found);
             if is_possible && left(&found) < least.min(step.may_leave(before, &named)) {
                 least = left(&found);
                 let step = step.compared(&found.best.held_out);
@@ -150,6 +151,14 @@ impl<'a> DiagnosisProblem<'a> {
             Some(best) => SearchOutcome { found: Found { first: outcome.found.first, ..best.found }, ..best },
             None => outcome,
         })
+    }
+
+    /// Whether the recordings of `outcome` show `step` as a model is written with it; `found` is what is there beside it.
+    fn shows(&self, step: &RestingStep, outcome: &SearchOutcome, found: &Found) -> bool {
+        let given = self.model.force_model();
+        let without = [&given, &outcome.found.base.state.model].map(|base| AugmentedModel::from(base.clone()));
+        let with = [&given, &found.base.state.model].map(|base| AugmentedModel::new(base.clone(), vec![step.term()]));
+        events::is_seen(&outcome.track, without, with)
     }
 
     /// `track` without instants beside turns whose direction is mistaken.
