@@ -71,15 +71,14 @@ pub(crate) fn beside(setting: &Setting<'_>, guesses: &[CandidateEffect], base: &
     Some(fixed.fit(guesses.to_vec(), &[], base)?.terms())
 }
 
-/// Share of what is left, mean square, that an event must take away from the fitted recordings once no
-/// tare of each makes up for it. Nothing that was held out can tell of what happened in one recording alone. Of 39 looked-at steps the
-/// 29 right ones take away 0.15 and more, as written; of the ten wrong ones two take away 0.01 at most, and six, which a jump at rest
-/// called up, add to what is left.
+/// Share of what is left, mean square, that an event must take away from the fitted recordings once no tare of each makes up for it.
+/// Nothing that was held out can tell of what happened in one recording alone. Of 32 looked-at steps that stand alone the right ones
+/// take away 0.14 and more, as written; of the wrong ones two take away 0.01 at most.
 const LEAST_WRITTEN: f64 = 0.05;
 
 /// Whether `track` shows an event: the better of the models `with` it leaves less of the
 /// counted instants than the better of those `without`.
-pub(crate) fn is_seen(track: &Track, without: [AugmentedModel; 2], with: [AugmentedModel; 2]) -> bool {
+fn is_seen(track: &Track, without: [AugmentedModel; 2], with: [AugmentedModel; 2]) -> bool {
     let least = |models: [AugmentedModel; 2]| {
         models.map(|model| track.left_square(&model)).into_iter().fold(f64::INFINITY, f64::min)
     };

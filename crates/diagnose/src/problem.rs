@@ -14,7 +14,7 @@ use crate::mass::{self, MovingMass};
 use crate::nuisance::{self, Nuisance};
 use crate::resting_step::{self, RestingStep};
 use crate::search::{Found, Limits, search};
-use crate::state::Setting;
+use crate::state::{Setting, State};
 use crate::track::Track;
 use crate::turns;
 use crate::verdict::Sizes;
@@ -138,7 +138,7 @@ impl<'a> DiagnosisProblem<'a> {
         for step in steps.into_iter().filter(|step| step.all_instants_n > matters_n) {
             let track = step.taken_off(outcome.track.clone(), muscle);
             let (found, sizes) = beside.search(&track, looked)?;
-            let is_possible = !step.is_spoken_against(&found.best.held_out) && self.shows(&step, &outcome, &found);
+            let is_possible = !step.is_spoken_against(&found.best.held_out) && self.goes_on(&step, &outcome);
             if is_possible && left(&found) < least.min(step.may_leave(before, &named)) {
                 least = left(&found);
                 let step = step.compared(&found.best.held_out);
@@ -153,12 +153,21 @@ impl<'a> DiagnosisProblem<'a> {
         })
     }
 
-    /// Whether the recordings of `outcome` show `step` as a model is written with it; `found` is what is there beside it.
-    fn shows(&self, step: &RestingStep, outcome: &SearchOutcome, found: &Found) -> bool {
-        let given = self.model.force_model();
-        let without = [&given, &outcome.found.base.state.model].map(|base| AugmentedModel::from(base.clone()));
-        let with = [&given, &found.base.state.model].map(|base| AugmentedModel::new(base.clone(), vec![step.term()]));
-        events::is_seen(&outcome.track, without, with)
+    /// Whether all that follows `step` in the recordings of `outcome` is off by as much as the force jumps, beside the base as given, the
+    /// refitted one, or that and what was found.
+    fn goes_on(&self, step: &RestingStep, outcome: &SearchOutcome) -> bool {
+        let SearchOutcome { track, found, .. } = outcome;
+        let given = events::beside(&self.setting(track, &nuisance::NONE), &[step.guess()], &self.model.force_model());
+        let beside_given_n = given.and_then(|terms| terms[0].amplitudes.first().copied());
+        let setting = self.setting(track, &found.nuisance);
+        let size_n = |state: &State| {
+            let mut guesses = state.guesses.clone();
+            guesses.retain(|guess| guess.id() != resting_step::ID);
+            guesses.push(step.guess());
+            setting.fit_near(guesses, state)?.fit.amplitudes.last().copied()
+        };
+        let sizes_n = [beside_given_n, size_n(&found.base.state), size_n(&found.best.state)];
+        sizes_n.into_iter().flatten().any(|size_n| step.lasts(size_n))
     }
 
     /// `track` without instants beside turns whose direction is mistaken.
