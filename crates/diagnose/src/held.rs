@@ -12,7 +12,6 @@ use crate::artifact::{Agreement, together};
 use crate::coverage::Coverage;
 use crate::diagnose::Diagnosis;
 use crate::error::DiagnoseError;
-use crate::nuisance::TARE_N;
 use crate::typical;
 
 /// Times what is left of the fitted recordings that may be left of a held-out one, whatever the reason. A recording or two do
@@ -27,7 +26,7 @@ pub(crate) const FAR: f64 = 10.0;
 /// Times the worst error with which one of the fitted recordings is foretold by the others: so much is foretold of any recording.
 const AS_OTHERS: f64 = 2.0;
 
-/// Standard deviations of the tare of a load cell that a recording may be off by: one in twenty is beyond.
+/// Tares of a load cell that a recording may be off by: what was fitted has one as well.
 const TARES: f64 = 2.0;
 
 /// Share of a held-out recording within what was fitted from which on it is judged, there alone.
@@ -85,8 +84,9 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
             continue;
         }
         // A wrong unit or zero takes a recording elsewhere, too.
+        let most_n = TARES * typical::most_tare_n(&trace);
         let readings = reading::explain(&[trace], model.base(), own_n);
-        if let Some(tare) = readings.iter().find(|reading| is_tare(reading)) {
+        if let Some(tare) = readings.iter().find(|reading| is_tare(reading, most_n)) {
             let words = tare.words();
             held.noticed.push(format!("{path}: {words}, no more than a load cell that is tared before each recording"));
             continue;
@@ -131,9 +131,9 @@ fn is_of_another(left_n: f64, typical_n: f64, own_n: f64, worst_foretold_n: f64)
         && (typical_n > MISSES * own_n || left_n > FAR * own_n)
 }
 
-/// Whether `reading` is the tare of a load cell: as fitted recordings have one of their own each, so may one that was held out.
-fn is_tare(reading: &Reading) -> bool {
-    matches!(reading.wrong, Wrong::Zero(zero_n) if reading.channel == "force" && zero_n.abs() <= TARES * TARE_N)
+/// Whether `reading` is a tare of `most_n` at most: as fitted recordings have one of their own each, so may one that was held out.
+fn is_tare(reading: &Reading, most_n: f64) -> bool {
+    matches!(reading.wrong, Wrong::Zero(zero_n) if reading.channel == "force" && zero_n.abs() <= most_n)
 }
 
 /// Root mean square of what the model of `trace` leaves of its counted samples, in N.

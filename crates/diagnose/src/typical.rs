@@ -117,9 +117,14 @@ fn tare_n(trace: &Trace) -> f64 {
     }
     let middle = left_n.len() / 2;
     let middle_n = *left_n.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let largest_n = trace.force_n.iter().copied().map(f64::abs).fold(0.0, f64::max);
-    let most_n = TARE_N.max(TARE_SHARE * largest_n);
+    let most_n = most_tare_n(trace);
     middle_n.clamp(-most_n, most_n)
+}
+
+/// What the tare of a load cell may be in a recording like that of `trace`, in N.
+pub(crate) fn most_tare_n(trace: &Trace) -> f64 {
+    let largest_n = trace.force_n.iter().copied().map(f64::abs).fold(0.0, f64::max);
+    TARE_N.max(TARE_SHARE * largest_n)
 }
 
 #[cfg(test)]
