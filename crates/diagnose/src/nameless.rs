@@ -166,23 +166,31 @@ fn gains_in_place(
 mod tests {
     use super::*;
     use crate::rehearsal::tests::Given;
-    use crate::search::{Limits, judged, search};
+
+    use pam_muscle::effects::Moment;
 
     const PROTOCOLS: [&str; 3] = ["isobaric-triangles", "isometric-ramps", "multisine"];
 
     /// The force that explains more in `given` than the effect `id` with `shape`, if one does.
     fn explains_more(given: &Given, id: &str, shape: &[f64]) -> Option<&'static str> {
-        let limits = Limits::of_test(0, 0.3);
-        let plain = Setting { floor_square: 0.09, ..given.setting() };
-        let mut found = search(&plain, &given.start, &given.model, &limits, &|| {}).expect("a search");
-        let nuisance = found.nuisance.clone();
-        let setting = plain.beside(&nuisance);
-        let state = setting.fit_near(vec![given.guess(id, shape)], &found.best.state).expect("a fit");
-        found.best = judged(&setting, state).expect("a fit of every fold");
-        let any = let_go(&setting, &mut found);
-        assert_eq!(any, found.best.state.guesses.is_empty());
-        assert_eq!(any, found.nameless.len() == 1);
-        found.nameless.first().map(|(_, force)| *force)
+        given.with_found(0.3, vec![given.guess(id, shape)], |setting, mut found, _| {
+            let any = let_go(setting, &mut found);
+            assert_eq!(any, found.best.state.guesses.is_empty());
+            assert_eq!(any, found.nameless.len() == 1);
+            found.nameless.first().map(|(_, force)| *force)
+        })
+    }
+
+    /// Recordings whose forces are those at the pressure and the length that `sees` makes of every moment.
+    fn seen(mut sees: impl FnMut(&Moment) -> (f64, f64)) -> Given {
+        let mut given = Given::of(&PROTOCOLS, &[]);
+        given.disturb();
+        for instant in &mut given.track.instants {
+            let moment = instant.moment;
+            let force_n = |(pressure_pa, length_m)| given.model.force_n(pressure_pa, length_m, moment.direction);
+            instant.force_n += force_n(sees(&moment)) - force_n((moment.pressure_pa, moment.length_m));
+        }
+        given
     }
 
     #[test]
@@ -212,17 +220,7 @@ mod tests {
         let mut drifting = Given::of(&PROTOCOLS, &[drift]);
         drifting.disturb();
         assert_eq!(explains_more(&drifting, "force-drift", &[60.0]), None);
-        let mut creeping = Given::of(&PROTOCOLS, &[]);
-        creeping.disturb();
-        for range in creeping.track.recordings.clone() {
-            let begins_s = creeping.track.instants[range.start].moment.time_s;
-            for instant in &mut creeping.track.instants[range] {
-                let moment = instant.moment;
-                let creeps_m = 1e-3 * (0.01 * (moment.time_s - begins_s)).tanh();
-                let force_n = |length_m| creeping.model.force_n(moment.pressure_pa, length_m, moment.direction);
-                instant.force_n += force_n(moment.length_m + creeps_m) - force_n(moment.length_m);
-            }
-        }
+        let creeping = seen(|moment| (moment.pressure_pa, moment.length_m + 1e-3 * (0.01 * moment.time_s).tanh()));
         assert_eq!(explains_more(&creeping, "force-drift", &[60.0]), Some("a length that wanders"));
     }
 
@@ -231,16 +229,11 @@ mod tests {
         let mut worn = Given::of(&PROTOCOLS, &[("fatigue-wear", &[0.7], &[0.6, 0.0])]);
         worn.disturb();
         assert_eq!(explains_more(&worn, "fatigue-wear", &[0.7]), None);
-        let mut creeping = Given::of(&PROTOCOLS, &[]);
-        creeping.disturb();
         let mut pulled_s = 0.0;
-        for instant in &mut creeping.track.instants {
-            let moment = instant.moment;
-            pulled_s += if instant.force_n > 0.0 { moment.step_s } else { 0.0 };
-            let creeps_m = 1e-3 * (0.05 * pulled_s).ln_1p();
-            let force_n = |length_m| creeping.model.force_n(moment.pressure_pa, length_m, moment.direction);
-            instant.force_n += force_n(moment.length_m + creeps_m) - force_n(moment.length_m);
-        }
+        let creeping = seen(|moment| {
+            pulled_s += if moment.force_n > 0.0 { moment.step_s } else { 0.0 };
+            (moment.pressure_pa, moment.length_m - 1e-3 * (0.05 * pulled_s).ln_1p())
+        });
         assert_eq!(explains_more(&creeping, "fatigue-wear", &[0.7]), Some("a clamp that creeps under the load"));
     }
 
@@ -249,14 +242,10 @@ mod tests {
         let mut late = Given::of(&PROTOCOLS, &[("channel-delay", &[0.0, 0.06], &[])]);
         late.disturb();
         assert_eq!(explains_more(&late, "channel-delay", &[0.0, 0.06]), None);
-        let mut pumping = Given::of(&PROTOCOLS, &[]);
-        pumping.disturb();
-        for instant in &mut pumping.track.instants {
-            let moment = instant.moment;
+        let pumping = seen(|moment| {
             let off_pa = -2.5 * (moment.pressure_pa + 1e5) * moment.speed_m_per_s;
-            let force_n = |pressure_pa| pumping.model.force_n(pressure_pa, moment.length_m, 0.0);
-            instant.force_n += force_n(moment.pressure_pa + off_pa) - force_n(moment.pressure_pa);
-        }
+            (moment.pressure_pa + off_pa, moment.length_m)
+        });
         assert_eq!(
             explains_more(&pumping, "channel-delay", &[0.0, 0.06]),
             Some("gas that is compressed by the strokes")
@@ -268,18 +257,14 @@ mod tests {
         let mut lagging = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
         lagging.disturb();
         assert_eq!(explains_more(&lagging, "pressure-lag", &[0.15, 0.0]), None);
-        let mut kinked = Given::of(&PROTOCOLS, &[]);
-        kinked.disturb();
         let mut inside_pa = 0.0;
-        for instant in &mut kinked.track.instants {
-            let moment = instant.moment;
+        let kinked = seen(|moment| {
             // Slower and slower from 8 % on.
             let constant_s = 0.02 + 2.0 / (1.0 + (-(moment.contraction_ratio - 0.08) / 0.004).exp());
             let follows = if moment.step_s > 0.0 { 1.0 - (-moment.step_s / constant_s).exp() } else { 1.0 };
             inside_pa += follows * (moment.pressure_pa - inside_pa);
-            let force_n = |pressure_pa| kinked.model.force_n(pressure_pa, moment.length_m, 0.0);
-            instant.force_n += force_n(inside_pa) - force_n(moment.pressure_pa);
-        }
+            (inside_pa, moment.length_m)
+        });
         assert_eq!(
             explains_more(&kinked, "pressure-lag", &[0.15, 0.0]),
             Some("a hose that kinks as the muscle contracts")

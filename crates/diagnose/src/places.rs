@@ -99,23 +99,14 @@ mod tests {
     use super::*;
     use crate::hypothesis::CandidateEffect;
     use crate::rehearsal::tests::Given;
-    use crate::search::{Limits, judged, search};
-
-    use pam_muscle::effects::effect;
 
     /// From where to where over its own coordinate the effect `id` lies, concealed and found with `shape`.
     fn region(id: &'static str, shape: &[f64], size: &[f64]) -> Region {
         let mut given = Given::of(&["isobaric-triangles", "isometric-ramps", "multisine"], &[(id, shape, size)]);
         given.disturb();
-        let plain = Setting { floor_square: 0.09, ..given.setting() };
-        let mut found = search(&plain, &given.start, &given.model, &Limits::of_test(0, 0.3), &|| {}).expect("a search");
-        let nuisance = found.nuisance.clone();
-        let setting = plain.beside(&nuisance);
-        let effect = effect(id).expect("an id");
         let guess = CandidateEffect { shape: shape.to_vec(), ..given.guess(id, &[]) };
-        let state = setting.fit_near(vec![guess], &found.best.state).expect("a fit");
-        found.best = judged(&setting, state).expect("a fit of every fold");
-        let regions = regions(&setting, &found, &[]);
+        let effect = guess.effect;
+        let regions = given.with_found(0.3, vec![guess], |setting, found, _| regions(setting, &found, &[]));
         regions.into_iter().find(|region| region.coordinate == effect.page().coordinate).expect("a region")
     }
 

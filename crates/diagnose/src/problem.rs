@@ -9,7 +9,6 @@ use pam_muscle::force::columns::ForceColumns;
 use crate::base;
 use crate::besides::Besides;
 use crate::error::DiagnoseError;
-use crate::events;
 use crate::mass::{self, MovingMass};
 use crate::nuisance::{self, Nuisance};
 use crate::resting_step::{self, RestingStep};
@@ -135,10 +134,11 @@ impl<'a> DiagnosisProblem<'a> {
         let without = &outcome.found.best.held_out;
         let steps = RestingStep::all(self.estimation, &outcome.track, direction, muscle, without)?;
         let named = outcome.found.best.state.terms();
-        for step in steps.into_iter().filter(|step| step.all_instants_n > matters_n) {
+        let is_one = |step: &RestingStep| step.all_instants_n > matters_n && self.goes_on(step, &outcome);
+        for step in steps.into_iter().filter(is_one) {
             let track = step.taken_off(outcome.track.clone(), muscle);
             let (found, sizes) = beside.search(&track, looked)?;
-            let is_possible = !step.is_spoken_against(&found.best.held_out) && self.goes_on(&step, &outcome);
+            let is_possible = !step.is_spoken_against(&found.best.held_out);
             if is_possible && left(&found) < least.min(step.may_leave(before, &named)) {
                 least = left(&found);
                 let step = step.compared(&found.best.held_out);
@@ -157,9 +157,9 @@ impl<'a> DiagnosisProblem<'a> {
     /// refitted one, or that and what was found.
     fn goes_on(&self, step: &RestingStep, outcome: &SearchOutcome) -> bool {
         let SearchOutcome { track, found, .. } = outcome;
-        let given = events::beside(&self.setting(track, &nuisance::NONE), &[step.guess()], &self.model.force_model());
-        let beside_given_n = given.and_then(|terms| terms[0].amplitudes.first().copied());
         let setting = self.setting(track, &found.nuisance);
+        let beside_given = setting.terms_beside(&[step.guess()], &self.model.force_model());
+        let beside_given_n = beside_given.and_then(|terms| terms[0].amplitudes.first().copied());
         let size_n = |state: &State| {
             let mut guesses = state.guesses.clone();
             guesses.retain(|guess| guess.id() != resting_step::ID);

@@ -44,8 +44,8 @@ const CLEARLY_LESS: f64 = 0.95;
 const AGAINST: f64 = 3.0;
 
 /// Share of what the force jumps by that all which follows must be off by, as a size that held-out recordings show must be half of what
-/// was named. Of 22 looked-at jumps that were named, ten of which were added to recordings of real muscles, the 13 steps have 0.89 and
-/// more, and of the nine that are none six have 0.31 at most, four of which nothing else had let go of.
+/// was named. Of 19 looked-at jumps that were named, ten of which were added to recordings of real muscles, the 13 steps have 0.89 and
+/// more, and of the six that are none four have 0.31 at most.
 const LASTS: f64 = 0.5;
 
 /// A step of the force at rest.

@@ -183,22 +183,16 @@ pub(crate) fn has_memory(effect: &dyn Effect) -> bool {
 mod tests {
     use super::*;
     use crate::rehearsal::tests::Given;
-    use crate::search::search;
 
     /// Names that are left of `guess` in `given`, where structure is left over `left_over`.
     fn names(given: &Given, guess: CandidateEffect, left_over: Coordinate) -> Vec<&'static str> {
-        let limits = Limits::of_test(0, 0.1);
-        let plain = Setting { floor_square: 0.01, ..given.setting() };
-        let mut found = search(&plain, &given.start, &given.model, &limits, &|| {}).expect("a search");
-        let nuisance = found.nuisance.clone();
-        let setting = plain.beside(&nuisance);
-        let state = setting.fit_near(vec![guess], &found.best.state).expect("a fit");
-        found.best = judged(&setting, state).expect("a fit of every fold");
-        let every: Vec<&Feature> = found.features.iter().collect();
-        found.left = ProjectedResidual::of(&setting, &found.best.state).structure(&every);
-        let sizes = Sizes::of(&found, &limits);
-        let_go(&setting, &mut found, &sizes, &limits, Some(left_over));
-        found.best.state.guesses.iter().map(CandidateEffect::id).collect()
+        given.with_found(0.1, vec![guess], |setting, mut found, limits| {
+            let every: Vec<&Feature> = found.features.iter().collect();
+            found.left = ProjectedResidual::of(setting, &found.best.state).structure(&every);
+            let sizes = Sizes::of(&found, limits);
+            let_go(setting, &mut found, &sizes, limits, Some(left_over));
+            found.best.state.guesses.iter().map(CandidateEffect::id).collect()
+        })
     }
 
     #[test]
@@ -218,18 +212,13 @@ mod tests {
         let left = |distance_m: f64, beside: bool| {
             let slides: [f64; 3] = [distance_m, 0.0, 0.0];
             let given = Given::of(&["isobaric-triangles", "multisine"], &[("pressure-lag", &[0.15, 0.0], &[])]);
-            let limits = Limits::of_test(0, 0.1);
-            let plain = Setting { floor_square: 0.01, ..given.setting() };
-            let mut found = search(&plain, &given.start, &given.model, &limits, &|| {}).expect("a search");
-            let nuisance = found.nuisance.clone();
-            let setting = plain.beside(&nuisance);
             let lag = beside.then(|| given.guess("pressure-lag", &[0.15, 0.0]));
             let guesses = lag.into_iter().chain([given.guess("presliding-hysteresis", &slides)]).collect();
-            let state = setting.fit_near(guesses, &found.best.state).expect("a fit");
-            found.best = judged(&setting, state).expect("a fit of every fold");
-            let n = found.best.state.guesses.len();
-            assert_eq!(let_go_of_turns(&setting, &mut found), found.best.state.guesses.len() < n);
-            found.best.state.guesses.iter().map(CandidateEffect::id).collect::<Vec<_>>()
+            given.with_found(0.1, guesses, |setting, mut found, _| {
+                let n = found.best.state.guesses.len();
+                assert_eq!(let_go_of_turns(setting, &mut found), found.best.state.guesses.len() < n);
+                found.best.state.guesses.iter().map(CandidateEffect::id).collect::<Vec<_>>()
+            })
         };
         assert_eq!(left(1e-3, false), ["presliding-hysteresis"]);
         assert_eq!(left(1e-3, true), ["pressure-lag"]);

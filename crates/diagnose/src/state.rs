@@ -12,7 +12,7 @@ use crate::design_matrix::{DesignMatrix, Regressors, events, rows_of};
 use crate::hypothesis::{CandidateEffect, n_amplitudes, ranges};
 use crate::joint::{HeldOut, Joint, JointFit};
 use crate::normal::{Extended, Normal};
-use crate::nuisance::Nuisance;
+use crate::nuisance::{self, Nuisance};
 use crate::track::{FOLDS, Track};
 
 /// Rounds in which what slack leaves of the force and the fit settle with one another, at most.
@@ -235,6 +235,14 @@ impl<'a> Setting<'a> {
         let mut others = state.guesses.clone();
         others.remove(index);
         self.fit_near(others, state)
+    }
+
+    /// Terms of `guesses` with their sizes beside `base` as it is, and no nuisances; none where the rows do not determine them.
+    pub(crate) fn terms_beside(&self, guesses: &[CandidateEffect], base: &ForceModel) -> Option<Vec<Term>> {
+        let space = self.space.clone();
+        let held = SearchSpace { free: Vec::new(), ranges: Vec::new(), held: *base.parameters(), ..space };
+        let fixed = Setting { space: &held, nuisance: &nuisance::NONE, ..*self };
+        Some(fixed.fit(guesses.to_vec(), &[], base)?.terms())
     }
 
     fn fit_from(

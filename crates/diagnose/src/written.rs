@@ -9,7 +9,6 @@ use pam_muscle::force::ForceModel;
 use crate::besides::Besides;
 use crate::discover::{Discovery, HeldAgainst};
 use crate::elsewhere::{KeptToFitted, keep_to_fitted};
-use crate::events;
 use crate::joint::JointFit;
 use crate::named::{named, nameless_entry, term_entry};
 use crate::own;
@@ -53,7 +52,7 @@ impl Fit<'_> {
         if guesses.is_empty() {
             return Some(Vec::new());
         }
-        Some(own::terms(events::beside(self.setting, guesses, base)?, sentences))
+        Some(own::terms(self.setting.terms_beside(guesses, base)?, sentences))
     }
 }
 

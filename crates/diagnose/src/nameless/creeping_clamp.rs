@@ -1,10 +1,10 @@
-//! A clamp that creeps under the load, or a cable that slips on its drum: the muscle is longer than the encoder says, by more and more.
+//! A clamp that creeps under the load, or a cable that slips on its drum: the muscle is shorter than the encoder says, by more and more.
 //!
 //! ```text
-//! F = F_base(p, L + x),  x = A ln(1 + q / q₀),  q = ∫ F dt
+//! F = F_base + A ln(1 + q / q₀) ∂F/∂L,  q = ∫ max(F, 0) dt
 //! ```
 //!
-//! It goes on from recording to recording, as wear does, but goes with the stiffness and not with the gas.
+//! To first order in the creep; `A` is below zero where the clamp lets the muscle go. It goes on from recording to recording, as wear does, but goes with the stiffness and not with the gas.
 
 use pam_muscle::effects::page::{Page, Symbol, Typical};
 use pam_muscle::effects::{Amplitude, Base, Dependence, Effect, Kept, Kind, Memory, Moment, Role, Shape};
@@ -70,9 +70,13 @@ static PAGE: Page = Page {
     name: "a clamp that creeps under the load",
     summary: "A clamp lets the muscle go, or a cable slips on its drum, by more the longer and the harder the muscle pulls. The encoder \
               does not see it.",
-    equation: "F = F_base(p, L + A ln(1 + q / q₀)),  q = ∫ F dt",
+    equation: "F = F_base + A ln(1 + q / q₀) ∂F/∂L,  q = ∫ max(F, 0) dt",
     symbols: &[
-        Symbol { symbol: "A", unit: "m", meaning: "length that it creeps while the load so far grows e-fold" },
+        Symbol {
+            symbol: "A",
+            unit: "m",
+            meaning: "length that it creeps while the load so far grows e-fold; below zero where it lets go",
+        },
         Symbol { symbol: "q₀", unit: "N s", meaning: "load so far from which on it slows down" },
         Symbol { symbol: "q", unit: "N s", meaning: "force over time since the first recording began" },
     ],

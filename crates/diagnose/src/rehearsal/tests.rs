@@ -9,6 +9,7 @@ use super::*;
 use crate::design_matrix::Regressors;
 use crate::hypothesis::{Beginning, CandidateEffect};
 use crate::protocols;
+use crate::search::{Found, Limits, judged, search};
 use crate::state::Setting;
 
 pub(crate) fn domain() -> Domain {
@@ -114,6 +115,23 @@ impl Given {
             sign: crate::hypothesis::Sign::Any,
             beginning: Beginning::Fresh,
         }
+    }
+
+    /// Asks of a search that took `guesses`, where the sensors leave `sensors_n`: in the setting in which these were fitted.
+    pub(crate) fn with_found<T>(
+        &self,
+        sensors_n: f64,
+        guesses: Vec<CandidateEffect>,
+        ask: impl FnOnce(&Setting<'_>, Found, &Limits) -> T,
+    ) -> T {
+        let limits = Limits::of_test(0, sensors_n);
+        let plain = Setting { floor_square: sensors_n.powi(2), ..self.setting() };
+        let mut found = search(&plain, &self.start, &self.model, &limits, &|| {}).expect("a search");
+        let nuisance = found.nuisance.clone();
+        let setting = plain.beside(&nuisance);
+        let state = setting.fit_near(guesses, &found.best.state).expect("a fit");
+        found.best = judged(&setting, state).expect("a fit of every fold");
+        ask(&setting, found, &limits)
     }
 
     pub(crate) fn setting(&self) -> Setting<'_> {

@@ -6,7 +6,7 @@ use super::*;
 use crate::hypothesis::{Beginning, Sign};
 use crate::joint::HeldOut;
 use crate::rehearsal::tests::Given;
-use crate::search::{Taken, search};
+use crate::search::Taken;
 use crate::trial::Trial;
 
 /// Recordings of a muscle with a lag, and a search of them that took `guess`.
@@ -21,14 +21,7 @@ impl Desk {
 
     /// Asks of a search that took `guesses`.
     fn ask<T>(&self, guesses: Vec<CandidateEffect>, ask: impl FnOnce(&Setting<'_>, Found, &Limits) -> T) -> T {
-        let limits = Limits::of_test(0, 0.1);
-        let plain = Setting { floor_square: 0.01, ..self.given.setting() };
-        let mut found = search(&plain, &self.given.start, &self.given.model, &limits, &|| {}).expect("a search");
-        let nuisance = found.nuisance.clone();
-        let setting = plain.beside(&nuisance);
-        let state = setting.fit_near(guesses, &found.best.state).expect("a fit");
-        found.best = judged(&setting, state).expect("a fit of every fold");
-        ask(&setting, found, &limits)
+        self.given.with_found(0.1, guesses, ask)
     }
 }
 
