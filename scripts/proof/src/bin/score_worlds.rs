@@ -47,6 +47,10 @@ struct Args {
     #[arg(long, value_name = "DIR")]
     keep: Option<PathBuf>,
 
+    /// Take the models that were kept in this folder rather than identify them.
+    #[arg(long, value_name = "DIR", conflicts_with = "keep")]
+    models: Option<PathBuf>,
+
     /// Fit boosted trees to every case by this script, too (python3 with numpy and scikit-learn).
     #[arg(long, value_name = "SCRIPT")]
     trees: Option<PathBuf>,
@@ -61,7 +65,7 @@ struct Args {
 }
 
 fn main() -> Result<()> {
-    let Args { folder, bin, layout, json, first, keep, trees, leave_out, jobs } = Args::parse();
+    let Args { folder, bin, layout, json, first, keep, models, trees, leave_out, jobs } = Args::parse();
     let truths = truths(&folder, layout, first)?;
     if layout == Layout::Outside && !folder.join("truth").exists() {
         writeln!(
@@ -78,7 +82,7 @@ fn main() -> Result<()> {
     if let Some(script) = trees.as_ref().filter(|script| !script.exists()) {
         bail!("no {}", script.display());
     }
-    let cases = Cases { folder, layout, bin, keep, trees, leave_out };
+    let cases = Cases { folder, layout, bin, keep, models, trees, leave_out };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build()?;
     let scores: Vec<Score> = pool.install(|| {
         truths

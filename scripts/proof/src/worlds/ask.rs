@@ -35,6 +35,8 @@ pub struct Cases {
     pub bin: PathBuf,
     /// Where models and diagnoses are kept, if they are.
     pub keep: Option<PathBuf>,
+    /// Where models that were kept are taken from, if they are, rather than identified.
+    pub models: Option<PathBuf>,
     /// Script of the boosted trees, where they are asked, too.
     pub trees: Option<PathBuf>,
     /// Whether each single effect is taken out of the catalogue, too.
@@ -137,6 +139,23 @@ impl Case<'_> {
         Ok(Ok(serde_json::from_str(&fs::read_to_string(out)?)?))
     }
 
+    /// Model of the case, or one that was kept; the complaint where it is refused.
+    fn identify(&self) -> Result<Option<String>> {
+        if let Some(models) = &self.cases.models {
+            let kept = models.join(self.name).join("model.json");
+            if !kept.exists() {
+                return Ok(Some(format!("no {}", kept.display())));
+            }
+            fs::copy(kept, self.path("model.json"))?;
+            return Ok(None);
+        }
+        let mut identify = Command::new(self.cases.bin.join("pam-identify"));
+        identify.args(&self.estimation).args(self.held_out());
+        identify.arg("--muscle").arg(self.cases.folder.join(self.name).join("muscle.toml"));
+        identify.arg("--out").arg(self.path("model.json")).arg("--quiet");
+        Ok(run(identify)?.map(|reason| format!("pam-identify {reason}")))
+    }
+
     fn ask(&self, truth: &Concealed) -> Result<Answer> {
         let refused = |reason: String| Answer {
             refused: Some(reason),
@@ -144,12 +163,8 @@ impl Case<'_> {
             augmented_n: f64::INFINITY,
             ..Answer::default()
         };
-        let mut identify = Command::new(self.cases.bin.join("pam-identify"));
-        identify.args(&self.estimation).args(self.held_out());
-        identify.arg("--muscle").arg(self.cases.folder.join(self.name).join("muscle.toml"));
-        identify.arg("--out").arg(self.path("model.json")).arg("--quiet");
-        if let Some(reason) = run(identify)? {
-            return Ok(refused(format!("pam-identify {reason}")));
+        if let Some(reason) = self.identify()? {
+            return Ok(refused(reason));
         }
         let diagnosis = match self.diagnose("diagnosis", None)? {
             Ok(diagnosis) => diagnosis,
