@@ -26,6 +26,7 @@ use crate::held_error::Left;
 use crate::isolability::isolability;
 use crate::mass::{self, MovingMass};
 use crate::named::candidates;
+use crate::nameless::Other;
 use crate::next_experiment::{Setpoints, confirm_mass, next_experiment};
 use crate::nuisance::ENDS_ID;
 use crate::periodic;
@@ -105,6 +106,8 @@ pub struct Diagnosis {
     pub pooled: Option<Pooled>,
     /// Names that are none, by id, each with the force without a name that explains more.
     pub nameless: Vec<(&'static str, &'static str)>,
+    /// Names that are none, by id, each with what explains as much and has none.
+    pub as_well: Vec<(&'static str, &'static Other)>,
     /// What the force does at one frequency while no drive does.
     pub periodic: Option<Periodic>,
     /// Base model refitted to the estimation recordings.
@@ -286,6 +289,9 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     };
     let typical = written.effects.is_empty().then(typical).transpose()?;
     let matters_above_n = question.limits.matters_above_n;
+    let neither_is_followed = typical.is_some_and(|typical| {
+        matters_above_n.is_none() && typical.neither_is_followed(&fitted.evaluation, &held.evaluation)
+    });
     let is_missed = typical.is_some_and(|typical| typical.is_missed(matters_above_n));
     // Where hold-outs alone speak against a model that nothing is missing in.
     let in_question = typical
@@ -296,8 +302,8 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     let typically_misses = is_missed && pooled.is_none();
     let periodic = periodic::periodic(fitted_traces.par_iter().chain(&held_traces));
     let swings = periodic.is_some_and(|periodic| periodic::matters(&periodic, sizes.beyond_noise_n()));
-    let verdict =
-        if verdict == Verdict::Consistent && (typically_misses || swings) { Verdict::Unexplained } else { verdict };
+    let is_in_doubt = typically_misses || neither_is_followed || swings;
+    let verdict = if verdict == Verdict::Consistent && is_in_doubt { Verdict::Unexplained } else { verdict };
     let mut regions =
         if verdict == Verdict::Consistent { Vec::new() } else { regions(&setting, &found, &question.paths()) };
     if let Some(region) = besides.mass.as_ref().and_then(|mass| mass.region(sizes.mismatch_n)) {
@@ -349,6 +355,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         typically_misses,
         pooled,
         nameless: found.nameless.clone(),
+        as_well: found.as_well.clone(),
         periodic,
         base,
         base_fitted,

@@ -33,6 +33,7 @@ impl Diagnosis {
         self.unexplained_share = numbers.share_unexplained(&self.effects);
         self.statement = words::statement(self.verdict, &self.effects, &numbers, &self.regions, &self.unexplained);
         self.statement += &words::nameless(&self.nameless);
+        self.statement += &words::as_well(&self.as_well);
         if let Some(empirical) = &mut self.empirical {
             let held = agreement.holdout_without_terms.as_ref().zip(agreement.holdout.together.as_ref());
             empirical.holdout =
@@ -125,6 +126,7 @@ impl Diagnosis {
             && !self.swings()
             && self.effects.is_empty()
             && self.nameless.is_empty()
+            && self.as_well.is_empty()
             && self.empirical.is_none()
             && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)
             && agreement.estimation.each.iter().all(|fitted| fitted.rmse_n <= held::FAR * agreement.noise_floor_n)

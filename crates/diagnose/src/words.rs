@@ -6,6 +6,7 @@ use pam_muscle::effects::effect;
 
 use crate::artifact::together;
 use crate::given::Given;
+use crate::nameless::Other;
 
 /// The numbers that a statement gives: RMSE over counted samples at the rate of the recordings, in N, as in the tables and in the
 /// report.
@@ -152,9 +153,21 @@ pub(crate) fn statement(
     }
 }
 
+/// The name of the effect `id`; of a user's own, the id.
+fn name(id: &str) -> String {
+    effect(id).map_or_else(|| id.to_owned(), |effect| effect.page().name.to_owned())
+}
+
+/// What explains as much as the names that it was taken for, and what tells; nothing where there is none.
+pub(crate) fn as_well(others: &[(&str, &Other)]) -> String {
+    let words = |(id, other): &(&str, &Other)| {
+        format!(" What looks like {} may as well be {}: {}.", name(id), other.name, other.told_by)
+    };
+    others.iter().map(words).collect()
+}
+
 /// What `nameless`, forces that explain more than the names that they were taken for, act like; nothing where there are none.
 pub(crate) fn nameless(nameless: &[(&str, &str)]) -> String {
-    let name = |id: &str| effect(id).map_or_else(|| id.to_owned(), |effect| effect.page().name.to_owned());
     let words = nameless.iter().map(|(id, force)| format!(" What looks like {} acts more like {force}.", name(id)));
     words.collect()
 }
@@ -272,6 +285,12 @@ mod tests {
              like a hose that kinks."
         );
         assert_eq!(nameless(&[]), "");
+        assert_eq!(
+            as_well(&[("presliding-hysteresis", &crate::nameless::RIG)]),
+            " What looks like pre-sliding hysteresis of the braid may as well be a rig that gives or has play: with a rod in the place of \
+             the muscle it is still there."
+        );
+        assert_eq!(as_well(&[]), "");
     }
 
     #[test]

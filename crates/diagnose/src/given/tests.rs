@@ -50,6 +50,17 @@ pub(crate) const RAMPS: Path = |time_s| {
 /// A minute along `path` of the muscle of `model`, at 50 Hz, whose load cell reads `gain` times the force, with noise
 /// of up to half a newton.
 pub(crate) fn recorded(name: &str, path: Path, model: &ModelArtifact, gain: f64) -> Prepared {
+    knocked(name, path, model, gain, 0.0)
+}
+
+/// Bits of a number, well mixed, as one between -0.5 and 0.5.
+fn mixed(number: u32) -> f64 {
+    f64::from(number.wrapping_mul(0x9e37_79b1).rotate_left(15).wrapping_mul(0x85eb_ca6b) >> 8) / f64::from(1 << 24)
+        - 0.5
+}
+
+/// The same, knocked by `knock_n` one way or the other for a third of a second, in one of twelve such times.
+pub(crate) fn knocked(name: &str, path: Path, model: &ModelArtifact, gain: f64, knock_n: f64) -> Prepared {
     let rows = 0..3000_u32;
     let time_s: Vec<f64> = rows.clone().map(|row| 0.02 * f64::from(row)).collect();
     let (pressure_pa, length_m): (Vec<f64>, Vec<f64>) = time_s.iter().map(|&time_s| path(time_s)).unzip();
@@ -68,19 +79,24 @@ pub(crate) fn recorded(name: &str, path: Path, model: &ModelArtifact, gain: f64)
     // The direction as it will be found: what is tried is the force.
     let still = prepare(&vec![0.0; time_s.len()]);
     let trace = pam_identification::trace::trace(&still, &model.force_model()).expect("a trace");
-    // Bits of the row's number, well mixed.
-    let noise_n = |row: u32| {
-        f64::from(row.wrapping_mul(0x9e37_79b1).rotate_left(15).wrapping_mul(0x85eb_ca6b) >> 8) / f64::from(1 << 24)
-            - 0.5
+    let of_knock_n = |row: u32| {
+        let at = mixed(row / 16);
+        if at.abs() < 1.0 / 24.0 { knock_n.copysign(at) } else { 0.0 }
     };
-    let force_n: Vec<f64> = trace.model_n.iter().zip(rows).map(|(force, row)| gain * (force + noise_n(row))).collect();
+    let reads_n = |(force_n, row): (&f64, u32)| gain * (force_n + mixed(row) + of_knock_n(row));
+    let force_n: Vec<f64> = trace.model_n.iter().zip(rows).map(reads_n).collect();
     prepare(&force_n)
 }
 
 /// A diagnosis of strokes and ramps of the model's own muscle, which names one effect at most.
 pub(crate) fn diagnosed(holdout: Vec<Prepared>) -> Diagnosis {
+    diagnosed_knocked(0.0, holdout)
+}
+
+/// The same, knocked by `knock_n`.
+pub(crate) fn diagnosed_knocked(knock_n: f64, holdout: Vec<Prepared>) -> Diagnosis {
     let model = artifact();
-    let own = |name, path| recorded(name, path, &model, 1.0).recording;
+    let own = |name, path| knocked(name, path, &model, 1.0, knock_n).recording;
     diagnose(Request {
         estimation: vec![own("strokes.csv", STROKES), own("ramps.csv", RAMPS)],
         holdout: holdout.into_iter().map(|prepared| prepared.recording).collect(),

@@ -16,6 +16,7 @@ use pam_muscle::effects::Effect;
 use crate::coordinates::Coordinates;
 use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
+use crate::nameless::Other;
 use crate::nuisance::{Group, Nuisance};
 use crate::stand_ins;
 use crate::state::{Setting, State};
@@ -109,6 +110,8 @@ pub struct Found {
     pub outdone: Vec<&'static str>,
     /// Ids of what was taken and let go of again, as a force that the catalogue has no name for explains more; each with that force, in words.
     pub nameless: Vec<(&'static str, &'static str)>,
+    /// Ids of what was taken and let go of again, as something without a name explains as much; each with that.
+    pub as_well: Vec<(&'static str, &'static Other)>,
     /// Ids of what was taken and let go of again, as a term without a name takes its place.
     pub replaced: Vec<&'static str>,
     /// Ids of static effects that stand for the static map.
@@ -284,6 +287,7 @@ pub fn search(
         stand_ins: Vec::new(),
         outdone: Vec::new(),
         nameless: Vec::new(),
+        as_well: Vec::new(),
         unheard_of: Vec::new(),
         replaced: Vec::new(),
         of_the_map: parsimonious,

@@ -129,7 +129,9 @@ fn without_a_name_a_muscle_is_consistent_unless_something_is_missing() {
     assert_eq!(verdict(&let_go, &quiet, false), Verdict::Unexplained, "and what fits with no shape that is known");
     (let_go.unheard_of, let_go.replaced) = (Vec::new(), vec!["stribeck"]);
     assert_eq!(verdict(&let_go, &quiet, false), Verdict::Unexplained, "and what a term says better");
-    (let_go.replaced, let_go.nameless) = (Vec::new(), vec![("fatigue-wear", "a clamp that creeps")]);
+    (let_go.replaced, let_go.as_well) = (Vec::new(), vec![("presliding-hysteresis", &crate::nameless::RIG)]);
+    assert_eq!(verdict(&let_go, &quiet, false), Verdict::Unexplained, "and what the rig may do");
+    (let_go.as_well, let_go.nameless) = (Vec::new(), vec![("fatigue-wear", "a clamp that creeps")]);
     assert_eq!(
         verdict(&let_go, &quiet, false),
         Verdict::Unexplained,

@@ -77,6 +77,12 @@ fn hold_outs_that_the_base_follows_make_what_is_unexplained_consistent() {
     });
     assert_eq!(nameless.verdict, Verdict::Unexplained, "a force without a name is there");
     assert!(nameless.statement.contains("acts more like a clamp that creeps under the load"), "{}", nameless.statement);
+    let of_a_rig = weighed(|found, agreement| {
+        (found.verdict, found.as_well) = (Verdict::Unexplained, vec![("presliding-hysteresis", &crate::nameless::RIG)]);
+        base_leaves(agreement, 1.9);
+    });
+    assert_eq!(of_a_rig.verdict, Verdict::Unexplained, "the rig may give");
+    assert!(of_a_rig.statement.contains("may as well be a rig that gives or has play"), "{}", of_a_rig.statement);
     let without = weighed(|found, agreement| {
         found.verdict = Verdict::Unexplained;
         (agreement.base_holdout.together, agreement.holdout.together) = (None, None);
