@@ -36,13 +36,15 @@ pub struct Other {
 }
 
 /// What turns friction over within a fraction of a millimetre, as pre-sliding does.
-pub(crate) const RIG: Other =
-    Other { name: "a rig that gives or has play", told_by: "with a rod in the place of the muscle it is still there" };
+pub(crate) const RIG: Other = Other {
+    name: "a rig that gives or has play",
+    told_by: "a rod in the place of the muscle shows it as well if it is the rig",
+};
 
 /// Friction that falls as the muscle contracts, as the load does.
 const OF_THE_BRAID: Other = Other {
     name: "friction whose coefficient changes with the contraction",
-    told_by: "under several constant loads friction of the load follows the load",
+    told_by: "under several constant loads its height follows the load, or the pressure",
 };
 
 /// What sticks in the path of the load, as a file of effects has it.

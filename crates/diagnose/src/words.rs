@@ -287,8 +287,8 @@ mod tests {
         assert_eq!(nameless(&[]), "");
         assert_eq!(
             as_well(&[("presliding-hysteresis", &crate::nameless::RIG)]),
-            " What looks like pre-sliding hysteresis of the braid may as well be a rig that gives or has play: with a rod in the place of \
-             the muscle it is still there."
+            " What looks like pre-sliding hysteresis of the braid may as well be a rig that gives or has play: a rod in the place of the \
+             muscle shows it as well if it is the rig."
         );
         assert_eq!(as_well(&[]), "");
     }
