@@ -106,7 +106,7 @@ pub struct Diagnosis {
     pub pooled: Option<Pooled>,
     /// Names that are none, by id, each with the force without a name that explains more.
     pub nameless: Vec<(&'static str, &'static str)>,
-    /// Names that are none, by id, each with what explains as much and has none.
+    /// Names that are none, by id, each with what may be there as well.
     pub as_well: Vec<(&'static str, &'static Other)>,
     /// What the force does at one frequency while no drive does.
     pub periodic: Option<Periodic>,

@@ -151,7 +151,7 @@ pub(crate) fn candidates(found: &Found, besides: &[&str]) -> Vec<Candidate> {
             } else if let Some((_, force)) = found.nameless.iter().find(|(taken_for, _)| *taken_for == id) {
                 format!("{force} explains more, and is none of the catalogue")
             } else if let Some((_, other)) = found.as_well.iter().find(|(taken_for, _)| *taken_for == id) {
-                format!("{} explains as much, and is none of the catalogue", other.name)
+                format!("may as well be {}", other.name)
             } else if found.unheard_of.contains(&id) {
                 "fits only with a shape that nothing published has".to_owned()
             } else if found.replaced.contains(&id) {

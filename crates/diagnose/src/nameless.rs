@@ -16,17 +16,19 @@ mod kinked_hose;
 
 use std::ops::Range;
 
+use pam_muscle::Coordinate;
 use pam_muscle::effects::Effect;
 use pam_muscle::effects::sentence::custom_effects;
 
+use crate::nuisance::range;
 use crate::search::Found;
-use crate::state::{Setting, State};
+use crate::state::Setting;
 use crate::track::Track;
 use crate::trial::{self, Shapes, Trial};
 use creeping_clamp::CreepingClamp;
 use kinked_hose::KinkedHose;
 
-/// What has no name and explains as much as an effect does.
+/// What may be there in the place of an effect, and cannot be told from it by these recordings.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Other {
     /// What it is, in words.
@@ -124,8 +126,8 @@ const CLEARLY_BEYOND: f64 = 3.0;
 
 /// Share of the load that friction has to be, in the middle of the contractions that were seen, to be told from another form of the
 /// friction of the braid, of which eq. 11 has one: a coefficient of 0.05 and a turn of 0.3 rad. Of 34 looked-at names five of eight wrong
-/// ones are less (of three healthy muscles of a stranger, whose friction falls with the contraction as Hildebrandt has it, of one whose
-/// fixture gives, and one beside a mass), and none of 26 right ones.
+/// ones are less (those of three healthy muscles of a stranger, whose friction falls with the contraction as Hildebrandt has it, of one
+/// whose fixture gives, and of one with a mass), and none of 26 right ones.
 const LEAST_OF_THE_LOAD: f64 = 0.015;
 
 /// Lets go of every effect of `found` in whose place a force without a name clearly foretells more. Whether there was any.
@@ -133,13 +135,13 @@ pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found) -> bool {
     let mut any = false;
     for index in (0..found.best.state.guesses.len()).rev() {
         let id = found.best.state.guesses[index].id();
-        let forces = taken_for(id, setting.track);
-        let clearly = if id == "pressure-lag" { CLEARLY_BEYOND } else { CLEARLY };
-        if id == LOAD && is_light(&found.best.state, index, setting.track) && found.let_go(setting, index) {
+        if id == LOAD && is_light(setting, found, index) && found.let_go(setting, index) {
             found.as_well.push((id, &OF_THE_BRAID));
             any = true;
             continue;
         }
+        let forces = taken_for(id, setting.track);
+        let clearly = if id == "pressure-lag" { CLEARLY_BEYOND } else { CLEARLY };
         let Some((gains, force)) = gains_in_place(setting, found, index, &forces) else { continue };
         if gains > clearly && found.let_go(setting, index) {
             found.nameless.push((id, force));
@@ -178,13 +180,10 @@ fn taken_for(id: &str, track: &Track) -> Vec<&'static dyn Effect> {
     forces
 }
 
-/// Whether effect `index` of `state`, friction that grows with the load, is less than [`LEAST_OF_THE_LOAD`] along `track`.
-fn is_light(state: &State, index: usize, track: &Track) -> bool {
-    let counted = track.instants.iter().zip(&track.counted).filter(|(_, counted)| **counted);
-    let contractions = counted.map(|(instant, _)| instant.moment.contraction_ratio);
-    let (low, high) =
-        contractions.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-    match state.terms()[index].amplitudes[..] {
+/// Whether effect `index` of `found`, friction that grows with the load, is less than [`LEAST_OF_THE_LOAD`].
+fn is_light(setting: &Setting<'_>, found: &Found, index: usize) -> bool {
+    let (low, high) = range(found.coordinates.of_kind(Coordinate::Contraction), &setting.track.counted);
+    match found.best.state.terms()[index].amplitudes[..] {
         [of_the_load, with_contraction] => of_the_load + with_contraction * 0.5 * (low + high) < LEAST_OF_THE_LOAD,
         _ => false,
     }

@@ -158,7 +158,7 @@ fn name(id: &str) -> String {
     effect(id).map_or_else(|| id.to_owned(), |effect| effect.page().name.to_owned())
 }
 
-/// What explains as much as the names that it was taken for, and what tells; nothing where there is none.
+/// What may be there in the place of the names that it was taken for, and what tells; nothing where there is none.
 pub(crate) fn as_well(others: &[(&str, &Other)]) -> String {
     let words = |(id, other): &(&str, &Other)| {
         format!(" What looks like {} may as well be {}: {}.", name(id), other.name, other.told_by)

@@ -4,7 +4,8 @@
 //! F = F_base + A ln(1 + q / q₀) ∂F/∂L,  q = ∫ max(F, 0) dt
 //! ```
 //!
-//! To first order in the creep; `A` is below zero where the clamp lets the muscle go. It goes on from recording to recording, as wear does, but goes with the stiffness and not with the gas.
+//! To first order in the creep; `A` is below zero where the clamp lets the muscle go. It goes on from recording to recording, as wear
+//! does, but goes with the stiffness and not with the gas.
 
 use pam_muscle::effects::page::{Page, Symbol, Typical};
 use pam_muscle::effects::{Amplitude, Base, Dependence, Effect, Kept, Kind, Memory, Moment, Role, Shape};

@@ -110,7 +110,7 @@ pub struct Found {
     pub outdone: Vec<&'static str>,
     /// Ids of what was taken and let go of again, as a force that the catalogue has no name for explains more; each with that force, in words.
     pub nameless: Vec<(&'static str, &'static str)>,
-    /// Ids of what was taken and let go of again, as something without a name explains as much; each with that.
+    /// Ids of what was taken and let go of again, as something else may be there as well; each with that.
     pub as_well: Vec<(&'static str, &'static Other)>,
     /// Ids of what was taken and let go of again, as a term without a name takes its place.
     pub replaced: Vec<&'static str>,
