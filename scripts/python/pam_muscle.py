@@ -977,13 +977,14 @@ def law_of(muscle):
     """How the direction is found for a muscle."""
     thresholds = muscle.model["direction"]
     standstill = thresholds.get("standstill", {"slides": {"over_pa": 0.0}})
-    slides = {"over_pa": None} if standstill == "held" else standstill["slides"]
+    slides = {"over_pa": None} if isinstance(standstill, str) else standstill["slides"]
     travels_m = thresholds.get("held_m", 0.0), thresholds.get("turn_m", 0.0)
-    return Law(thresholds["length_m"], thresholds["pressure_pa"], *travels_m, slides["over_pa"], slides.get("share", 1.0))
+    at_rest = slides["over_pa"], slides.get("share", 1.0), standstill == "sticks"
+    return Law(thresholds["length_m"], thresholds["pressure_pa"], *travels_m, *at_rest)
 
 
 def directions_of(recording, muscle):
-    """State of friction at every row, in [-1, 1]: +1 after contracting, -1 after extending, 0 where it is not known; and the slices of
+    """State of friction at every row: +1 after contracting, -1 after extending, 0 where it is not known; and the slices of
     rows before the first motion of a segment, where it is not."""
     law = law_of(muscle)
     found, unknown = np.zeros(len(recording.time_s)), []
@@ -1004,7 +1005,7 @@ def directions_of(recording, muscle):
 
 @dataclasses.dataclass
 class Law:
-    """How the direction is found, in SI; `over_pa` is None where friction is held at standstill, `share` what of it slides."""
+    """How the direction is found, in SI; `over_pa` is None where friction is held at standstill or sticks, `share` what of it slides."""
 
     length_m: float
     pressure_pa: float
@@ -1012,6 +1013,7 @@ class Law:
     turn_m: float
     over_pa: float
     share: float
+    sticks: bool
 
 
 def hundredths(state):
@@ -1037,8 +1039,8 @@ def beginning(recording, rows, law, neither_n, one_n):
     for index in range(-20, 21):
         state = index / 20
         middles = np.full(len(smooth_pa), state)
-        if law.over_pa is not None and (law.over_pa > 0.0 or law.share < 1.0):
-            middles = np.array([0.5 * (low + high) for low, high in slide_bounds(smooth_pa, law, (state, state))])
+        if law.sticks or law.over_pa is not None and (law.over_pa > 0.0 or law.share < 1.0):
+            middles = np.array([0.5 * (low + high) for low, high in rest_bounds(smooth_pa, law, (state, state))])
         left = np.cumsum((without_n - middles * with_n) ** 2)[-1]
         if left < least:
             best, least = [hundredths(middle) for middle in middles], left
@@ -1068,7 +1070,8 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     pushed = [pushed_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
     pushed = [rows for rows in pushed if rows is not None]
     slides = law.over_pa is not None and (law.over_pa > 2.0 * law.pressure_pa or law.share < 1.0)
-    if law.over_pa is not None and not slides:
+    follows = law.over_pa is not None and not slides
+    if follows:
         for still in pushed:
             before = marks[still.start - 1] if still.start > 0 else sign_of(carried)
             rows = slice(still.start, still.stop)
@@ -1077,10 +1080,10 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
             rest = next((around.stop - still.stop for around in stills if still.start in around), 0)
             carry_on(marks, still.stop, before, rest + 2 * half)
     bounds = [(float(mark), float(mark)) if mark else carried for mark in marks]
-    if slides:
+    if slides or law.sticks:
         for still in pushed:
             before = bounds[still.start - 1] if still.start > 0 else carried
-            bounds[still.start : still.stop] = slide_bounds(pressure[still.start : still.stop], law, before)
+            bounds[still.start : still.stop] = rest_bounds(pressure[still.start : still.stop], law, before)
             unmoved = still.stop
             while unmoved < n and marks[unmoved] == 0:
                 bounds[unmoved] = bounds[still.stop - 1]
@@ -1088,7 +1091,7 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     # A parabola over n values leaves 2.25 / n of the variance in the middle one.
     values = 2.25 * (NOISE * law.length_m / 4e-6) ** 2
     longest = Window(time_s, min(0.5 * values * period_s, 0.15)).half
-    slid = [] if law.over_pa is None else pushed
+    slid = [] if law.over_pa is None and not law.sticks else pushed
     path, slow = path_of(time_s, shortening, (longest, most), NOISE * law.length_m, turns_of(bounds, pushed))
     white_m = 1.5 * NOISE * law.length_m / math.sqrt(2 * longest + 1)
     wanders_m = sorted(rests_within(path, still)[1] for still in stills)
@@ -1114,16 +1117,29 @@ def carry_on(marks, start, before, most):
         turn += 1
 
 
-def slide_bounds(pressure, law, before):
-    """Friction that follows the pressure: a stop that gives way from one sign to the other over `law.over_pa`, or up to a share."""
+STICKS_UP_TO = 5.0  # times what a motion would give friction at the same pressure
+STICKS_FROM_PA = 1e3
+
+
+def rest_bounds(pressure, law, before):
+    """Friction that the pressure moves: a stop that gives way from one sign to the other over `law.over_pa`, or up to a share, or what
+    sticks at the force that it has."""
+
+    def stuck(state, times):
+        return max(-STICKS_UP_TO, min(times * state, STICKS_UP_TO))
 
     def slid(state, by):
         return max(state, min(state + by, law.share)) if by > 0.0 else min(state, max(state + by, -law.share))
 
     (low, high), last_pa, bounds = before, float(pressure[0]), []
     for pressure_pa in pressure.tolist():
-        by = 2.0 * (pressure_pa - last_pa) / law.over_pa
-        low, high, last_pa = slid(low, by), slid(high, by), pressure_pa
+        if law.sticks:
+            times = max(last_pa, STICKS_FROM_PA) / max(pressure_pa, STICKS_FROM_PA)
+            low, high = stuck(low, times), stuck(high, times)
+        else:
+            by = 2.0 * (pressure_pa - last_pa) / law.over_pa
+            low, high = slid(low, by), slid(high, by)
+        last_pa = pressure_pa
         bounds.append((low, high))
     return bounds
 

@@ -98,9 +98,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LAW")]
     pub(crate) friction: Option<FrictionArg>,
 
-    /// What friction does while the length stands still: held, follows (the pressure, at once), or the kPa of pressure
-    /// over which it turns over, with the share of it that does where that is not all (40:0.6); by default what fits the
-    /// recordings best.
+    /// What friction does while the length stands still: held (its sign; its size follows the pressure), sticks (at the
+    /// force that it has), follows (the pressure, at once), or the kPa of pressure over which it turns over, with the
+    /// share of it that does where that is not all (40:0.6); by default what fits the recordings best.
     #[arg(long, value_name = "LAW", value_parser = standstill)]
     pub(crate) standstill: Option<Standstill>,
 
@@ -244,10 +244,11 @@ impl FrictionArg {
     }
 }
 
-/// `held`, `follows`, or a pressure in kPa and, after a colon, a share.
+/// `held`, `sticks`, `follows`, or a pressure in kPa and, after a colon, a share.
 fn standstill(text: &str) -> Result<Standstill, String> {
     match text {
         "held" => return Ok(Standstill::Held),
+        "sticks" => return Ok(Standstill::Sticks),
         "follows" => return Ok(Standstill::AT_ONCE),
         _ => {}
     }
@@ -256,9 +257,8 @@ fn standstill(text: &str) -> Result<Standstill, String> {
         (Ok(over_kpa), Ok(share)) if over_kpa > 0.0 && over_kpa.is_finite() && share > 0.0 && share <= 1.0 => {
             Ok(Standstill::Slides { over_pa: over_kpa * 1e3, share })
         }
-        _ => {
-            Err("expected held, follows, or a pressure in kPa, with a share up to 1 after a colon (40:0.6)".to_owned())
-        }
+        _ => Err("expected held, sticks, follows, or a pressure in kPa, with a share up to 1 after a colon (40:0.6)"
+            .to_owned()),
     }
 }
 

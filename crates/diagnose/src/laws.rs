@@ -18,8 +18,9 @@ use crate::search::Found;
 use crate::track::Track;
 
 /// Laws that are compared.
-const LAWS: [Standstill; 5] = [
+const LAWS: [Standstill; 6] = [
     Standstill::Held,
+    Standstill::Sticks,
     Standstill::AT_ONCE,
     Standstill::Slides { over_pa: 2e4, share: 1.0 },
     Standstill::Slides { over_pa: 5e4, share: 1.0 },

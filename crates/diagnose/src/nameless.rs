@@ -7,7 +7,7 @@
 //! | a clamp that creeps under the load                             | wear                                | wear goes with the gas, this with `∂F/∂L`  |
 //! | gas that is compressed by the strokes                          | a channel that is late              | a late length is an error of the length    |
 //! | a hose that kinks as the muscle contracts                      | lag of the pressure in the tube     | a tube lags at every length                |
-//! | friction whose coefficient changes with the contraction        | friction that grows with the load, where that is light, or beside another name | the load does not vanish with the pressure |
+//! | friction whose coefficient changes with the contraction        | friction that grows with the load   | the load does not vanish with the pressure |
 //!
 //! Each is a sentence of the grammar, or has a file here. Where it foretells held-out blocks better than the effect does, that is no name.
 
@@ -16,11 +16,9 @@ mod kinked_hose;
 
 use std::ops::Range;
 
-use pam_muscle::Coordinate;
 use pam_muscle::effects::Effect;
 use pam_muscle::effects::sentence::custom_effects;
 
-use crate::nuisance::range;
 use crate::search::Found;
 use crate::state::Setting;
 use crate::track::Track;
@@ -31,6 +29,8 @@ use kinked_hose::KinkedHose;
 /// What may be there in the place of an effect, and cannot be told from it by these recordings.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Other {
+    /// Whether the model lacks something if it is there: a form of what eq. 11 has is the static map's.
+    pub is_missing: bool,
     /// What it is, in words.
     pub name: &'static str,
     /// What tells the two apart, as a clause.
@@ -39,12 +39,14 @@ pub struct Other {
 
 /// What turns friction over within a fraction of a millimetre, as pre-sliding does.
 pub(crate) const RIG: Other = Other {
+    is_missing: true,
     name: "a rig that gives or has play",
     told_by: "a rod in the place of the muscle shows it as well if it is the rig",
 };
 
 /// Friction that falls as the muscle contracts, as the load does.
-const OF_THE_BRAID: Other = Other {
+pub(crate) const OF_THE_BRAID: Other = Other {
+    is_missing: false,
     name: "friction whose coefficient changes with the contraction",
     told_by: "under several constant loads its height follows the load, or the pressure",
 };
@@ -124,22 +126,11 @@ pub(crate) const CLEARLY: f64 = 1.5;
 /// gains 1.4 at most in the 18 that have one, and 50 and 77 in two hoses that kink.
 const CLEARLY_BEYOND: f64 = 3.0;
 
-/// Share of the load that friction has to be, in the middle of the contractions that were seen, to be told from another form of the
-/// friction of the braid, of which eq. 11 has one: a coefficient of 0.05 and a turn of 0.3 rad. Of 34 looked-at names five of eight wrong
-/// ones are less (those of three healthy muscles of a stranger, whose friction falls with the contraction as Hildebrandt has it, of one
-/// whose fixture gives, and of one with a mass), and none of 26 right ones.
-const LEAST_OF_THE_LOAD: f64 = 0.015;
-
 /// Lets go of every effect of `found` in whose place a force without a name clearly foretells more. Whether there was any.
 pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found) -> bool {
     let mut any = false;
     for index in (0..found.best.state.guesses.len()).rev() {
         let id = found.best.state.guesses[index].id();
-        if id == LOAD && is_light(setting, found, index) && found.let_go(setting, index) {
-            found.as_well.push((id, &OF_THE_BRAID));
-            any = true;
-            continue;
-        }
         let forces = taken_for(id, setting.track);
         let clearly = if id == "pressure-lag" { CLEARLY_BEYOND } else { CLEARLY };
         let Some((gains, force)) = gains_in_place(setting, found, index, &forces) else { continue };
@@ -150,9 +141,6 @@ pub(crate) fn let_go(setting: &Setting<'_>, found: &mut Found) -> bool {
     }
     any
 }
-
-/// Friction that grows with the load.
-const LOAD: &str = "load-dependent-friction";
 
 /// Forces that are taken for the effect `id` in recordings as long as those of `track`.
 fn taken_for(id: &str, track: &Track) -> Vec<&'static dyn Effect> {
@@ -178,15 +166,6 @@ fn taken_for(id: &str, track: &Track) -> Vec<&'static dyn Effect> {
         forces.push(&CreepingClamp);
     }
     forces
-}
-
-/// Whether effect `index` of `found`, friction that grows with the load, is less than [`LEAST_OF_THE_LOAD`].
-fn is_light(setting: &Setting<'_>, found: &Found, index: usize) -> bool {
-    let (low, high) = range(found.coordinates.of_kind(Coordinate::Contraction), &setting.track.counted);
-    match found.best.state.terms()[index].amplitudes[..] {
-        [of_the_load, with_contraction] => of_the_load + with_contraction * 0.5 * (low + high) < LEAST_OF_THE_LOAD,
-        _ => false,
-    }
 }
 
 /// Evidence, `Σ ln(with the effect / with a force)` over held-out blocks, of the best of `forces` in the place of effect `index`, and what
@@ -225,31 +204,6 @@ mod tests {
             assert_eq!(any, found.nameless.len() == 1);
             found.nameless.first().map(|(_, force)| *force)
         })
-    }
-
-    /// What is left of friction that grows with the load, and what is said of it, in recordings with `friction_n` besides.
-    fn load_in(friction_n: impl Fn(&Moment) -> f64) -> (usize, Vec<&'static str>) {
-        let mut given = Given::of(&PROTOCOLS, &[]);
-        given.disturb();
-        for instant in &mut given.track.instants {
-            instant.force_n -= instant.moment.direction * friction_n(&instant.moment);
-        }
-        given.with_found(0.3, vec![given.guess(LOAD, &[])], |setting, mut found, _| {
-            let_go(setting, &mut found);
-            (found.best.state.guesses.len(), found.as_well.iter().map(|(_, other)| other.name).collect())
-        })
-    }
-
-    #[test]
-    fn friction_of_the_load_stays_and_what_the_braid_has_of_another_form_is_none() {
-        let model = Given::of(&PROTOCOLS, &[]).model;
-        let of_the_load =
-            |share: f64| load_in(|now| share * model.force_n(now.pressure_pa, now.length_m, 0.0).max(0.0));
-        assert_eq!(of_the_load(0.02), (1, Vec::new()));
-        assert_eq!(of_the_load(0.01), (0, vec![OF_THE_BRAID.name]));
-        // As Hildebrandt has it: with the pressure, and half of it where the muscle is short.
-        let of_the_braid = load_in(|now| 2e-5 * now.pressure_pa * (1.15 - 2.4 * now.contraction_ratio));
-        assert_eq!(of_the_braid, (0, vec![OF_THE_BRAID.name]));
     }
 
     /// Recordings whose forces are those at the pressure and the length that `sees` makes of every moment.

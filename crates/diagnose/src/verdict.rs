@@ -108,7 +108,7 @@ pub fn verdict(found: &Found, sizes: &Sizes, besides: bool) -> Verdict {
         // What called up a name that is none is there.
         let is_missing = is_missing
             || !found.nameless.is_empty()
-            || !found.as_well.is_empty()
+            || found.as_well.iter().any(|(_, other)| other.is_missing)
             || [&found.stand_ins, &found.unheard_of, &found.outdone, &found.replaced]
                 .iter()
                 .any(|let_go_of| !let_go_of.is_empty());

@@ -126,7 +126,7 @@ impl Diagnosis {
             && !self.swings()
             && self.effects.is_empty()
             && self.nameless.is_empty()
-            && self.as_well.is_empty()
+            && self.as_well.iter().all(|(_, other)| !other.is_missing)
             && self.empirical.is_none()
             && held.is_some_and(|held| held.rmse_all_n <= FOLLOWED_WITHIN * agreement.noise_floor_n)
             && agreement.estimation.each.iter().all(|fitted| fitted.rmse_n <= held::FAR * agreement.noise_floor_n)

@@ -99,7 +99,7 @@ pub fn judge(
 /// The laws that are compared first: those under which the pressure turns over all of the friction, or none.
 pub fn laws() -> Vec<Standstill> {
     let slides = OVER_PA.map(|over_pa| Standstill::Slides { over_pa, share: 1.0 });
-    slides.into_iter().chain([Standstill::Held]).collect()
+    slides.into_iter().chain([Standstill::Held, Standstill::Sticks]).collect()
 }
 
 /// Laws under which the pressure turns over a share of the friction: the few that are looked at first.

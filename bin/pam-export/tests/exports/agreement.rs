@@ -206,13 +206,17 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
         desk.write(&format!("{log}.json"), &desk.read("presliding_hysteresis.json"));
         logs.push(vectors(log, log));
     }
-    // Friction that slides partly while the length rests, and a rest after a gap, of which nothing is known but its force.
-    let partly =
-        desk.read("presliding_hysteresis.json").replace("\"over_pa\": 40000.0", "\"over_pa\": 40000.0, \"share\": 0.6");
+    // Friction that slides partly while the length rests, or sticks, and a rest after a gap, of which nothing is known but its force.
+    let slides = desk.read("presliding_hysteresis.json");
+    let partly = slides.replace("\"over_pa\": 40000.0", "\"over_pa\": 40000.0, \"share\": 0.6");
+    let sticks = slides.replace("{\"slides\": {\"over_pa\": 40000.0}}", "\"sticks\"");
     desk.write("rest.csv", &with_a_rest_after_a_gap(&desk.read("minor-loops.csv")));
-    for (name, log) in [("partly", "isometric-ramps"), ("partly-rest", "rest")] {
-        desk.write(&format!("{name}.json"), &partly);
-        logs.push(vectors(name, log));
+    for (name, law) in [("partly", &partly), ("sticks", &sticks)] {
+        for log in ["isometric-ramps", "rest"] {
+            let name = format!("{name}-{log}");
+            desk.write(&format!("{name}.json"), law);
+            logs.push(vectors(&name, log));
+        }
     }
     // A length with noise, along which turns are vertices, corners and the ends of rests.
     let noisy = with_play(&desk.read("presliding_hysteresis.json"), 2e-4);

@@ -16,7 +16,7 @@ use pam_muscle::effects::Effect;
 use crate::coordinates::Coordinates;
 use crate::hypothesis::CandidateEffect;
 use crate::joint::HeldOut;
-use crate::nameless::Other;
+use crate::nameless::{OF_THE_BRAID, Other};
 use crate::nuisance::{Group, Nuisance};
 use crate::stand_ins;
 use crate::state::{Setting, State};
@@ -27,7 +27,7 @@ use beside::kept_map;
 pub(crate) use beside::{Beside, fitting};
 use ends::Ends;
 use forward::{ForwardSelection, Selected};
-use look::{FORM_AT_MOST, Look, form_square};
+use look::{FORM_AT_MOST, Look, OddStatic, form_square};
 use settle::{at_rest, polished, unless_suspected, without};
 pub use worth::chance;
 
@@ -235,11 +235,16 @@ pub fn search(
         let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
         (best.state.guesses.len() < limits.max_effects).then(|| look.odd_static(&best)).flatten()
     };
-    if let Some(next) = odd {
-        // The friction takes the place of the odd part of the map from here on.
-        beside.smooth = beside.smooth.without(&[Group::OddMap]);
-        whole = again(&setting.beside(&beside.smooth), &whole)?;
-        best = next;
+    let mut as_well = Vec::new();
+    match odd {
+        Some(OddStatic::Named(next)) => {
+            // The friction takes the place of the odd part of the map from here on.
+            beside.smooth = beside.smooth.without(&[Group::OddMap]);
+            whole = again(&setting.beside(&beside.smooth), &whole)?;
+            best = next;
+        }
+        Some(OddStatic::AsWell(id)) => as_well.push((id, &OF_THE_BRAID)),
+        None => {}
     }
     let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
     let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
@@ -287,7 +292,7 @@ pub fn search(
         stand_ins: Vec::new(),
         outdone: Vec::new(),
         nameless: Vec::new(),
-        as_well: Vec::new(),
+        as_well,
         unheard_of: Vec::new(),
         replaced: Vec::new(),
         of_the_map: parsimonious,

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use pam_artifact::ModelArtifact;
-use pam_muscle::direction::Standstill;
+use pam_muscle::direction::{STICKS_FROM_PA, STICKS_UP_TO, Standstill};
 use pam_muscle::effects::Term;
 use pam_muscle::effects::moment::LATEX_C10_SHARE;
 use pam_muscle::force::braid::Braid;
@@ -105,9 +105,10 @@ pub(super) fn parameter(id: &str, name: &str) -> String {
 pub(super) fn of_direction(artifact: &ModelArtifact, model: &ForceModel) -> Vec<(String, f64)> {
     let thresholds = artifact.direction;
     let (slides, over_pa, share) = match thresholds.standstill {
-        Standstill::Held => (0.0, 0.0, 1.0),
+        Standstill::Held | Standstill::Sticks => (0.0, 0.0, 1.0),
         Standstill::Slides { over_pa, share } => (1.0, over_pa, share),
     };
+    let sticks = f64::from(u8::from(thresholds.standstill == Standstill::Sticks));
     let rest_slide_m_per_pa = model.slide_m_per_pa(model.muscle().rest_length_m);
     let named = [
         ("TURN_THRESHOLD_M", thresholds.length_m),
@@ -117,6 +118,9 @@ pub(super) fn of_direction(artifact: &ModelArtifact, model: &ForceModel) -> Vec<
         ("STANDSTILL_SLIDES", slides),
         ("STANDSTILL_OVER_PA", over_pa),
         ("STANDSTILL_SHARE", share),
+        ("STANDSTILL_STICKS", sticks),
+        ("STICKS_UP_TO", STICKS_UP_TO),
+        ("STICKS_FROM_PA", STICKS_FROM_PA),
         ("REST_SLIDE_THRESHOLD_M", rest_slide_m_per_pa * thresholds.pressure_pa),
         ("NOISE_PER_THRESHOLD", NOISE_PER_THRESHOLD),
         ("RATE_WINDOW_S", 2.0 * HALF_WINDOW_S),

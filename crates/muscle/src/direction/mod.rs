@@ -16,8 +16,8 @@
 //!
 //! A length that stays within the play for a second stands still, unless it turns slowly or crawls all the while.
 //! What friction does where it stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
-//! keeps its last sign, or the strands slide under rising (+1, as if contracting) and falling pressure (-1), at once or only
-//! after the pressure has turned back by some amount. At the beginning of a segment nothing is known of it until the first
+//! keeps its last sign, or sticks at the force that it has, or the strands slide under rising (+1, as if contracting) and falling
+//! pressure (-1), at once or only after the pressure has turned back by some amount. At the beginning of a segment nothing is known of it until the first
 //! motion: the state is zero there and the samples are unsettled. In a segment in which nothing ever moves it stays zero, and
 //! its samples count.
 //!
@@ -40,11 +40,11 @@ mod thresholds;
 mod travel;
 mod turn;
 
-use states::{Bounds, State, Stretch, moving_average, slide};
+use states::{Bounds, State, Stretch, moving_average, rest};
 
 pub use carried::{Carried, Piece};
 pub use rest::STANDSTILL_S;
-pub use states::WINDOW_S;
+pub use states::{STICKS_FROM_PA, STICKS_UP_TO, WINDOW_S};
 pub use thresholds::{Driver, Law, Standstill, Thresholds};
 
 /// Rows that are worked on at a time, from the beginning of a segment on; across a border between two nothing is remembered but a
@@ -55,7 +55,7 @@ pub const STRETCH_ROWS: usize = 1 << 18;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Direction {
     /// In hundredths.
-    states: Vec<i8>,
+    states: Vec<i16>,
     settled: Vec<bool>,
     /// Whether the direction is known at all: some motion came before it in its segment.
     known: Vec<bool>,
@@ -172,7 +172,7 @@ impl Direction {
 
     /// Assumes `state` wherever nothing is known.
     pub fn assume(&mut self, state: f64) {
-        let hundredths = (STEPS * state).round() as i8;
+        let hundredths = (STEPS * state).round() as i16;
         self.states.iter_mut().zip(&self.known).filter(|(_, known)| !**known).for_each(|(at, _)| *at = hundredths);
     }
 
@@ -196,13 +196,13 @@ impl Direction {
 
     fn extend(&mut self, stretch: &[State]) {
         for State { bounds, is_settled } in stretch {
-            self.states.push((STEPS * bounds.middle()).round() as i8);
+            self.states.push((STEPS * bounds.middle()).round() as i16);
             self.settled.push(*is_settled && bounds.is_known());
             self.known.push(bounds.is_known());
         }
     }
 
-    /// Direction of a row, in [-1, 1]; 0 where it is not known.
+    /// Direction of a row, in [-1, 1], and up to [`STICKS_UP_TO`] where friction sticks and the pressure falls; 0 where it is not known.
     pub fn sign(&self, row: usize) -> f64 {
         f64::from(self.states[row]) / STEPS
     }
@@ -259,10 +259,8 @@ impl Direction {
             let beginnings = (-BEGINNINGS..=BEGINNINGS).map(|index| f64::from(index) / f64::from(BEGINNINGS));
             let paths = beginnings.map(|state| {
                 let mut states = vec![State { bounds: Bounds::at(state), is_settled: false }; unknown.len()];
-                if let Standstill::Slides { over_pa, share } = standstill
-                    && (over_pa > 0.0 || share < 1.0)
-                {
-                    slide(&smooth_pa, over_pa, share, Bounds::at(state), &mut states);
+                if standstill.is_moved() {
+                    rest(&smooth_pa, standstill, Bounds::at(state), &mut states);
                 }
                 (left(&states), states)
             });
@@ -270,7 +268,7 @@ impl Direction {
                 && least.is_finite()
             {
                 for (row, state) in unknown.zip(states) {
-                    begun.states[row] = (STEPS * state.bounds.middle()).round() as i8;
+                    begun.states[row] = (STEPS * state.bounds.middle()).round() as i16;
                 }
             }
         }

@@ -13,6 +13,11 @@ use super::turn::{NOISE, Turn};
 /// Length of the moving average, in s; at least five samples and at most 101 are averaged.
 pub const WINDOW_S: f64 = 0.05;
 
+/// Most that friction which sticks is of what a motion would give it at the same pressure.
+pub const STICKS_UP_TO: f64 = 5.0;
+/// Gauge pressure below which friction that sticks changes no more, in Pa: hardly anything presses the strands together.
+pub const STICKS_FROM_PA: f64 = 1e3;
+
 /// Between what the state of friction must lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bounds {
@@ -57,6 +62,13 @@ impl Bounds {
             if by > 0.0 { (state + by).min(share).max(state) } else { (state + by).max(-share).min(state) }
         };
         Self { low: slid(self.low), high: slid(self.high) }
+    }
+
+    /// After the pressure has gone from one value to another, in Pa, beside a friction that stays the force it was.
+    fn stuck(self, from_pa: f64, to_pa: f64) -> Self {
+        let times = from_pa.max(STICKS_FROM_PA) / to_pa.max(STICKS_FROM_PA);
+        let stuck = |state: f64| (times * state).clamp(-STICKS_UP_TO, STICKS_UP_TO);
+        Self { low: stuck(self.low), high: stuck(self.high) }
     }
 }
 
@@ -148,10 +160,9 @@ impl<'a> Stretch<'a> {
             return from_marks(&marks, carried);
         }
         play(&self.contraction, &self.shortening, thresholds.length_m, *half, carried.sign(), &mut marks);
-        let follows = |over_pa: f64, share: f64| over_pa <= 2.0 * thresholds.pressure_pa && share >= 1.0;
-        if let Standstill::Slides { over_pa, share } = standstill
-            && follows(over_pa, share)
-        {
+        let follows = matches!(standstill, Standstill::Slides { over_pa, share }
+            if over_pa <= 2.0 * thresholds.pressure_pa && share >= 1.0);
+        if follows {
             for still in &self.pushed {
                 let rest = self.resting.iter().find(|rest| rest.contains(&still.start)).unwrap_or(still);
                 let before = if still.start > 0 { marks[still.start - 1].signum() } else { carried.sign() };
@@ -164,12 +175,10 @@ impl<'a> Stretch<'a> {
         let slow = Slow { contraction: &self.contraction, pressure, half: *half, long: self.long };
         slow.doubt(&self.resting, *thresholds, &mut marks);
         let mut states = from_marks(&marks, carried);
-        if let Standstill::Slides { over_pa, share } = standstill
-            && !follows(over_pa, share)
-        {
+        if !follows && standstill.is_moved() {
             for still in &self.pushed {
                 let before = if still.start > 0 { states[still.start - 1].bounds } else { carried };
-                slide(&pressure[still.clone()], over_pa, share, before, &mut states[still.clone()]);
+                rest(&pressure[still.clone()], standstill, before, &mut states[still.clone()]);
                 let after = states[still.end - 1];
                 let unmoved = marks[still.end..].iter().take_while(|mark| **mark == 0).count();
                 states[still.end..still.end + unmoved].fill(after);
@@ -231,13 +240,18 @@ fn from_marks(marks: &[i8], carried: Bounds) -> Vec<State> {
     marks.iter().map(state).collect()
 }
 
-/// Friction at a standstill that follows the smooth `pressure`: a stop that gives way from one sign to the other over
-/// `over_pa`. What it was before the standstill need not be known: once the pressure has moved far enough, it is.
-pub(super) fn slide(pressure: &[f64], over_pa: f64, share: f64, before: Bounds, states: &mut [State]) {
+/// Friction at a standstill as the smooth `pressure` moves it. Where it slides it is a stop that gives way from one sign to the other, and
+/// what it was before the standstill need not be known: once the pressure has moved far enough, it is. Where it sticks, the less the
+/// pressure is the more of what that would give it is left.
+pub(super) fn rest(pressure: &[f64], standstill: Standstill, before: Bounds, states: &mut [State]) {
     let mut bounds = before;
     let mut last_pa = pressure[0];
     for (state, &pressure_pa) in states.iter_mut().zip(pressure) {
-        bounds = bounds.slid(2.0 * (pressure_pa - last_pa) / over_pa, share);
+        bounds = match standstill {
+            Standstill::Held => bounds,
+            Standstill::Sticks => bounds.stuck(last_pa, pressure_pa),
+            Standstill::Slides { over_pa, share } => bounds.slid(2.0 * (pressure_pa - last_pa) / over_pa, share),
+        };
         last_pa = pressure_pa;
         *state = State { bounds, is_settled: true };
     }

@@ -9,8 +9,10 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schemas", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Standstill {
-    /// It keeps the sign of the last motion, whatever the pressure does.
+    /// It keeps the sign of the last motion, whatever the pressure does, and has the size that the pressure gives it.
     Held,
+    /// It sticks: its force stays what the last motion left, whatever the pressure does.
+    Sticks,
     /// It follows the pressure, and has turned over once the pressure has turned back by so much.
     Slides {
         /// From one sign to the other, in Pa.
@@ -25,10 +27,20 @@ impl Standstill {
     /// Turned over by any change of the pressure that is not noise.
     pub const AT_ONCE: Self = Self::Slides { over_pa: 0.0, share: 1.0 };
 
+    /// Whether the pressure moves the state of friction little by little; of a pressure that it follows at once the sign is enough.
+    pub(super) fn is_moved(self) -> bool {
+        match self {
+            Self::Held => false,
+            Self::Sticks => true,
+            Self::Slides { over_pa, share } => over_pa > 0.0 || share < 1.0,
+        }
+    }
+
     /// In words.
     pub fn words(self) -> String {
         match self {
             Self::Held => "friction is held at standstill".to_owned(),
+            Self::Sticks => "friction sticks at standstill, at the force that the last motion left".to_owned(),
             Self::Slides { over_pa, share } => {
                 let turns = if over_pa > 0.0 {
                     format!("friction at standstill turns over with {:.1} kPa of pressure", over_pa * 1e-3)

@@ -60,15 +60,31 @@ impl Desk {
 
     /// The friction that stands for the odd part of the map.
     fn odd_of_the_map(&self) -> Option<&'static str> {
-        self.look(|look, base| Some(look.odd_static(&again(look.mapped, base)?)?.state.guesses[0].id()))
+        self.look(|look, base| named(look.odd_static(&again(look.mapped, base)?)?))
+    }
+
+    /// The friction in whose place other friction of the braid may be as well.
+    fn odd_as_well(&self) -> Option<&'static str> {
+        self.look(|look, base| match look.odd_static(&again(look.mapped, base)?)? {
+            OddStatic::AsWell(id) => Some(id),
+            OddStatic::Named(_) => None,
+        })
+    }
+
+    /// With friction of so many newtons besides.
+    fn rub(mut self, friction_n: impl Fn(&Moment) -> f64) -> Self {
+        for instant in &mut self.given.track.instants {
+            instant.force_n -= instant.moment.direction * friction_n(&instant.moment);
+        }
+        self
     }
 
     /// The same beside a lag that was named.
     fn odd_beside_lag(&self) -> Option<&'static str> {
         self.look(|look, base| {
             let lag = self.given.guess(LAG.0, LAG.1);
-            let named = judged(look.mapped, look.mapped.fit_near(vec![lag], &base.state)?)?;
-            Some(look.odd_static(&named)?.state.guesses.last()?.id())
+            let lagging = judged(look.mapped, look.mapped.fit_near(vec![lag], &base.state)?)?;
+            named(look.odd_static(&lagging)?)
         })
     }
 
@@ -80,6 +96,14 @@ impl Desk {
     /// The fixture that gives.
     fn fixture(&self) -> Option<&'static str> {
         self.look(|look, base| Some(look.fixture(&look.formed(base)?, 0.02)?.state.guesses[0].id()))
+    }
+}
+
+/// The name that was given, if one was.
+fn named(odd: OddStatic) -> Option<&'static str> {
+    match odd {
+        OddStatic::Named(named) => Some(named.state.guesses.last()?.id()),
+        OddStatic::AsWell(_) => None,
     }
 }
 
@@ -153,17 +177,27 @@ fn friction_under_load_is_found_whatever_eq_11_misses_of_a_static_force() {
 }
 
 #[test]
-fn beside_a_name_friction_is_of_the_load_only_where_no_other_coefficient_does_as_well() {
+fn friction_is_of_the_load_only_where_no_other_coefficient_does_as_well() {
     let rubbing: (&'static str, &[f64], &[f64]) = ("load-dependent-friction", &[], &[0.05, 0.0]);
     assert_eq!(Desk::of(&[LAG, rubbing]).odd_beside_lag(), Some("load-dependent-friction"));
-    let mut bent = Desk::of(&[LAG]);
-    assert_eq!(bent.odd_beside_lag(), None);
-    for instant in &mut bent.given.track.instants {
-        let Moment { pressure_pa, direction, contraction_ratio, .. } = instant.moment;
-        instant.force_n -= direction * 8e-5 * pressure_pa * (1.15 - 4.0 * contraction_ratio);
+    assert_eq!(Desk::of(&[LAG]).odd_beside_lag(), None);
+    let of_the_braid = |now: &Moment| 8e-5 * now.pressure_pa * (1.15 - 4.0 * now.contraction_ratio);
+    assert_eq!(Desk::of(&[LAG]).rub(of_the_braid).odd_beside_lag(), None);
+    for desk in [Desk::of(&[LAG]), Desk::of(&[])] {
+        let bent = desk.rub(of_the_braid);
+        assert_eq!((bent.odd_of_the_map(), bent.odd_as_well()), (None, Some("load-dependent-friction")), "alone");
     }
-    assert_eq!(bent.odd_beside_lag(), None);
-    assert_eq!(bent.odd_of_the_map(), Some("load-dependent-friction"), "alone it is the likelier one");
+}
+
+#[test]
+fn light_friction_is_none_of_the_load() {
+    let model = Desk::of(&[]).given.model;
+    let of_the_load = |share: f64| {
+        let desk = Desk::of(&[]).rub(|now| share * model.force_n(now.pressure_pa, now.length_m, 0.0).max(0.0));
+        (desk.odd_of_the_map(), desk.odd_as_well())
+    };
+    assert_eq!(of_the_load(0.02), (Some("load-dependent-friction"), None));
+    assert_eq!(of_the_load(0.01), (None, Some("load-dependent-friction")));
 }
 
 #[test]

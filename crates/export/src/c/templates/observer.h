@@ -56,14 +56,20 @@ static inline double pam_backlash_follow(pam_backlash_filter *filter, double noi
 }
 
 /* Friction while the length may stand still: at once with any pressure beyond noise, or sliding over PAM_STANDSTILL_OVER_PA,
-   up to PAM_STANDSTILL_SHARE of it. */
+   up to PAM_STANDSTILL_SHARE of it, or stuck at the force that it has. */
 static inline void pam_still_follow(pam_observer *o, double pressure_step_pa)
 {
     const double pressure_pa = o->pressure.value;
-    if (!PAM_STANDSTILL_SLIDES) {
+    if (!PAM_STANDSTILL_SLIDES && !PAM_STANDSTILL_STICKS) {
         return;
     }
-    if (PAM_STANDSTILL_OVER_PA > 2.0 * PAM_PRESSURE_THRESHOLD_PA || PAM_STANDSTILL_SHARE < 1.0) {
+    if (PAM_STANDSTILL_STICKS) {
+        const double from_pa = fmax(pressure_pa - pressure_step_pa, PAM_STICKS_FROM_PA);
+        const double stuck = o->still_state * from_pa / fmax(pressure_pa, PAM_STICKS_FROM_PA);
+        o->still_low_pa = fmin(o->still_low_pa, pressure_pa);
+        o->still_high_pa = fmax(o->still_high_pa, pressure_pa);
+        o->still_state = fmin(fmax(stuck, -PAM_STICKS_UP_TO), PAM_STICKS_UP_TO);
+    } else if (PAM_STANDSTILL_OVER_PA > 2.0 * PAM_PRESSURE_THRESHOLD_PA || PAM_STANDSTILL_SHARE < 1.0) {
         const double slid = o->still_state + 2.0 * pressure_step_pa / PAM_STANDSTILL_OVER_PA;
         o->still_low_pa = fmin(o->still_low_pa, pressure_pa);
         o->still_high_pa = fmax(o->still_high_pa, pressure_pa);
@@ -160,7 +166,7 @@ static inline pam_moment pam_observe(pam_observer *o, double step_s, double pres
     } else {
         pam_still_follow(o, pressure_step_pa);
     }
-    if (PAM_STANDSTILL_SLIDES && o->time_s - o->still_s >= PAM_STANDSTILL_S
+    if ((PAM_STANDSTILL_SLIDES || PAM_STANDSTILL_STICKS) && o->time_s - o->still_s >= PAM_STANDSTILL_S
         && (o->resting || o->still_high_pa - o->still_low_pa > PAM_PRESSURE_THRESHOLD_PA)) {
         o->resting = 1;
         o->state = o->still_state;

@@ -170,6 +170,24 @@ fn friction_that_is_held_keeps_its_sign_whatever_the_pressure_does() {
 }
 
 #[test]
+fn friction_that_sticks_is_the_same_force_at_every_pressure() {
+    let (pressure, length) = held_length();
+    let states_at = |pressure: &[f64], carried: Bounds| {
+        let thresholds = Thresholds { standstill: Standstill::Sticks, ..THRESHOLDS };
+        states_of(&times(4000), pressure, &length, thresholds, Driver::Motion, carried)
+    };
+    let states = states_at(&pressure, Bounds::UNKNOWN);
+    for row in [1400, 1600, 2000, 2500, 3000, 3900] {
+        let force = states[row].bounds.middle() * pressure[row];
+        assert!((force - 3e5).abs() < 0.02 * 3e5, "row {row}: {force}");
+    }
+    // Vented altogether, no more is left than so many times what a motion gives.
+    let vented: Vec<f64> = pressure.iter().map(|pressure_pa| (pressure_pa - 1e5).max(0.0)).collect();
+    let most = states_at(&vented, Bounds::UNKNOWN).iter().map(|state| state.bounds.middle()).fold(0.0, f64::max);
+    assert!((most - STICKS_UP_TO).abs() < 1e-9, "{most}");
+}
+
+#[test]
 fn friction_that_slides_turns_over_with_so_much_pressure() {
     let (pressure, length) = held_length();
     let thresholds = Thresholds { standstill: Standstill::Slides { over_pa: 4e4, share: 1.0 }, ..THRESHOLDS };
