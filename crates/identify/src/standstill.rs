@@ -400,10 +400,58 @@ mod tests {
         assert_eq!(first(&|law| if law == sooner { 0.9999 } else { 1.0 }), sooner);
         let by = |one: Standstill, rmse_n: f64| move |law: Standstill| if law == one { rmse_n } else { 1.0 };
         assert_eq!(first(&|_| 1.0), MIDDLE);
-        for law in [Standstill::Held, Standstill::AT_ONCE, Standstill::Slides { over_pa: 1.6e5, share: 1.0 }] {
+        for law in [
+            Standstill::Held,
+            Standstill::Sticks,
+            Standstill::AT_ONCE,
+            Standstill::Slides { over_pa: 1.6e5, share: 1.0 },
+        ] {
             assert_eq!(first(&by(law, 0.997)), MIDDLE);
             assert_eq!(first(&by(law, 0.99)), law);
         }
+    }
+
+    /// A muscle that goes back and forth and rests after each stroke while its pressure goes to another level and back, at 100 Hz, whose
+    /// friction at rest is that of the last motion times what `at_rest` makes of the pressure of the motion and the pressure of now.
+    fn resting(at_rest: impl Fn(f64, f64) -> f64) -> Prepared {
+        let model = model();
+        // A stroke of 2 s and a rest of 4 s, one way and the other.
+        let row = |row: usize| {
+            let (stroke, t) = (row / 600, 0.01 * (row % 600) as f64);
+            let way = if stroke % 2 == 0 { 1.0 } else { -1.0 };
+            let along = if way > 0.0 { (t / 2.0).min(1.0) } else { 1.0 - (t / 2.0).min(1.0) };
+            let moves_pa = 2e5 + 2e4 * (stroke % 3) as f64;
+            let other_pa = if stroke % 4 < 2 { 0.5e5 } else { 3.5e5 };
+            let away = (1.0 - ((t - 4.0) / 1.5).abs()).max(0.0);
+            let (pressure_pa, length_m) = (moves_pa + away * (other_pa - moves_pa), 0.26 - 0.03 * along);
+            let share = if t > 2.0 { at_rest(moves_pa, pressure_pa) } else { 1.0 };
+            let noise_n = 0.3 * ((row * 7919 % 1013) as f64 / 506.0 - 1.0);
+            (0.01 * row as f64, pressure_pa, length_m, model.force_n(pressure_pa, length_m, share * way) + noise_n)
+        };
+        let rows: Vec<(f64, f64, f64, f64)> = (0..7200).map(row).collect();
+        let column = |of: &dyn Fn(&(f64, f64, f64, f64)) -> f64| rows.iter().map(of).collect::<Vec<f64>>();
+        let samples = Samples::from_columns(
+            &column(&|row| row.0),
+            &column(&|row| row.1),
+            &column(&|row| row.2),
+            &column(&|row| row.3),
+        );
+        direct(gate(vec![recording("resting.csv", samples)]).expect("a recording"), THRESHOLDS, Form::Corrected)
+            .expect("directions")
+            .remove(0)
+    }
+
+    #[test]
+    fn friction_that_sticks_is_told_from_friction_whose_sign_is_held() {
+        let muscle = pam_muscle::Muscle::nominal();
+        let columns = ForceColumns::new(&muscle, 3e9, Form::Corrected, 3e5 * 0.25);
+        let taken = |at_rest: &dyn Fn(f64, f64) -> f64| {
+            judge(&[&resting(at_rest)], &columns, THRESHOLDS).expect("laws")[0].standstill
+        };
+        assert_eq!(taken(&|moved_pa, now_pa| moved_pa / now_pa), Standstill::Sticks);
+        // And where some of it follows the pressure.
+        assert_eq!(taken(&|moved_pa, now_pa| (moved_pa / now_pa).powf(0.7)), Standstill::Sticks);
+        assert_eq!(taken(&|_, _| 1.0), Standstill::Held);
     }
 
     #[test]
