@@ -426,16 +426,12 @@ mod tests {
             let (pressure_pa, length_m) = (moves_pa + away * (other_pa - moves_pa), 0.26 - 0.03 * along);
             let share = if t > 2.0 { at_rest(moves_pa, pressure_pa) } else { 1.0 };
             let noise_n = 0.3 * ((row * 7919 % 1013) as f64 / 506.0 - 1.0);
-            (0.01 * row as f64, pressure_pa, length_m, model.force_n(pressure_pa, length_m, share * way) + noise_n)
+            [0.01 * row as f64, pressure_pa, length_m, model.force_n(pressure_pa, length_m, share * way) + noise_n]
         };
-        let rows: Vec<(f64, f64, f64, f64)> = (0..7200).map(row).collect();
-        let column = |of: &dyn Fn(&(f64, f64, f64, f64)) -> f64| rows.iter().map(of).collect::<Vec<f64>>();
-        let samples = Samples::from_columns(
-            &column(&|row| row.0),
-            &column(&|row| row.1),
-            &column(&|row| row.2),
-            &column(&|row| row.3),
-        );
+        let rows: Vec<[f64; 4]> = (0..7200).map(row).collect();
+        let [time_s, pressure_pa, length_m, force_n] =
+            [0, 1, 2, 3].map(|column| rows.iter().map(|row| row[column]).collect::<Vec<f64>>());
+        let samples = Samples::from_columns(&time_s, &pressure_pa, &length_m, &force_n);
         direct(gate(vec![recording("resting.csv", samples)]).expect("a recording"), THRESHOLDS, Form::Corrected)
             .expect("directions")
             .remove(0)

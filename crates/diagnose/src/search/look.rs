@@ -54,7 +54,7 @@ const LEAST_OF_THE_LOAD: f64 = 0.015;
 /// What stands for the odd part of the static map.
 pub(super) enum OddStatic {
     /// Friction with a name, beside the even part.
-    Named(Judged),
+    Named(Box<Judged>),
     /// The odd part itself, as another form of the friction of the braid may do as well as the friction with this id.
     AsWell(&'static str),
 }
@@ -228,7 +228,7 @@ impl Look<'_> {
         if self.is_light(&named) || friction.log_ratio <= self.friction_by_contraction(&beside, &bare) + more {
             return Some(OddStatic::AsWell(friction.guess.id()));
         }
-        again(&self.plain.beside(&even), &named).map(OddStatic::Named)
+        again(&self.plain.beside(&even), &named).map(|named| OddStatic::Named(Box::new(named)))
     }
 
     /// Whether the friction that was named last is less than [`LEAST_OF_THE_LOAD`].

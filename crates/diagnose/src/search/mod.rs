@@ -241,7 +241,7 @@ pub fn search(
             // The friction takes the place of the odd part of the map from here on.
             beside.smooth = beside.smooth.without(&[Group::OddMap]);
             whole = again(&setting.beside(&beside.smooth), &whole)?;
-            best = next;
+            best = *next;
         }
         Some(OddStatic::AsWell(id)) => as_well.push((id, &OF_THE_BRAID)),
         None => {}
