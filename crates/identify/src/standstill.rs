@@ -407,12 +407,7 @@ mod tests {
         assert_eq!(first(&|law| if law == sooner { 0.9999 } else { 1.0 }), sooner);
         let by = |one: Standstill, rmse_n: f64| move |law: Standstill| if law == one { rmse_n } else { 1.0 };
         assert_eq!(first(&|_| 1.0), MIDDLE);
-        for law in [
-            Standstill::Held,
-            Standstill::Sticks,
-            Standstill::AT_ONCE,
-            Standstill::Slides { over_pa: 1.6e5, share: 1.0 },
-        ] {
+        for law in [Standstill::Held, Standstill::AT_ONCE, Standstill::Slides { over_pa: 1.6e5, share: 1.0 }] {
             assert_eq!(first(&by(law, 0.997)), MIDDLE);
             assert_eq!(first(&by(law, 0.99)), law);
         }
