@@ -1070,8 +1070,7 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     pushed = [pushed_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
     pushed = [rows for rows in pushed if rows is not None]
     slides = law.over_pa is not None and (law.over_pa > 2.0 * law.pressure_pa or law.share < 1.0)
-    follows = law.over_pa is not None and not slides
-    if follows:
+    if law.over_pa is not None and not slides:
         for still in pushed:
             before = marks[still.start - 1] if still.start > 0 else sign_of(carried)
             rows = slice(still.start, still.stop)

@@ -83,6 +83,13 @@ fn an_effect_of_ones_own_stands_in_the_header_under_its_equation() {
     }
 }
 
+/// The model with friction that sticks at standstill.
+fn sticking(model: &str) -> String {
+    let slides = "{\"slides\": {\"over_pa\": 40000.0}}";
+    assert!(model.contains(slides), "{model}");
+    model.replace(slides, "\"sticks\"")
+}
+
 #[test]
 fn without_the_future_the_direction_is_late_and_no_more() {
     if !has_c() {
@@ -91,7 +98,7 @@ fn without_the_future_the_direction_is_late_and_no_more() {
     let desk = Desk::new();
     // The shorter the strokes, the larger the share of them in which a turn has not been noticed yet: minor loops go down to
     // 1 mm, and the threshold is 0.15 mm. A rest is noticed a second late.
-    let sticks = model(&[]).replace("{\"slides\": {\"over_pa\": 40000.0}}", "\"sticks\"");
+    let sticks = sticking(&model(&[]));
     let logs = [("isobaric-triangles", 3.0), ("length-steps", 3.0), ("minor-loops", 6.0)];
     for (law, logs) in [(model(&[]), &logs[..]), (sticks, &[("isometric-ramps", 6.0)][..])] {
         desk.write("model.json", &law);
@@ -213,7 +220,7 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
     // Friction that slides partly while the length rests, or sticks, and a rest after a gap, of which nothing is known but its force.
     let slides = desk.read("presliding_hysteresis.json");
     let partly = slides.replace("\"over_pa\": 40000.0", "\"over_pa\": 40000.0, \"share\": 0.6");
-    let sticks = slides.replace("{\"slides\": {\"over_pa\": 40000.0}}", "\"sticks\"");
+    let sticks = sticking(&slides);
     desk.write("rest.csv", &with_a_rest_after_a_gap(&desk.read("minor-loops.csv")));
     for (name, law) in [("partly", &partly), ("sticks", &sticks)] {
         for log in ["isometric-ramps", "rest"] {

@@ -44,7 +44,7 @@ const OF_THE_ODD: f64 = 0.5;
 /// with the contraction: eq. 11 has one form of that, and muscles have others. Of 22 looked-at names that stand so this is less in seven of
 /// nine wrong ones, five of them in healthy muscles, and in one of 13 right ones; with half of it in six and one, with its double in eight
 /// and four.
-const AT_ALL: f64 = 0.5;
+const BEYOND_THE_BRAID: f64 = 0.5;
 /// Share of the load that friction has to be, in the middle of the contractions that were seen, to be told from another form of the
 /// friction of the braid at all: a coefficient of 0.05 and a turn of 0.3 rad. Of 34 looked-at names five of eight wrong ones are less (those
 /// of three healthy muscles of a stranger, whose friction falls with the contraction as Hildebrandt has it, of one whose fixture gives, and
@@ -223,7 +223,7 @@ impl Look<'_> {
         let friction = trials.iter().find(stands)?;
         // Beside another effect it is likelier that eq. 11 lacks the shape of the friction than that two effects are there. Of 13 looked-at
         // cases in which it stood so five wrong names and a right one go by that.
-        let more = if best.state.guesses.is_empty() { AT_ALL } else { CLEARLY };
+        let more = if best.state.guesses.is_empty() { BEYOND_THE_BRAID } else { CLEARLY };
         let named = settle(&beside, &bare, friction)?;
         if self.is_light(&named) || friction.log_ratio <= self.friction_by_contraction(&beside, &bare) + more {
             return Some(OddStatic::AsWell(friction.guess.id()));

@@ -17,7 +17,8 @@
 //! A length that stays within the play for a second stands still, unless it turns slowly or crawls all the while.
 //! What friction does where it stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
 //! keeps its last sign, or sticks at the force that it has, or the strands slide under rising (+1, as if contracting) and falling
-//! pressure (-1), at once or only after the pressure has turned back by some amount. At the beginning of a segment nothing is known of it until the first
+//! pressure (-1), at once or only after the pressure has turned back by some amount.
+//! At the beginning of a segment nothing is known of it until the first
 //! motion: the state is zero there and the samples are unsettled. In a segment in which nothing ever moves it stays zero, and
 //! its samples count.
 //!
