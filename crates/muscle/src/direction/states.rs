@@ -65,7 +65,9 @@ impl Bounds {
         Self { low: slid(self.low), high: slid(self.high) }
     }
 
-    /// After the pressure has gone from one value to another, in Pa, beside a friction that stays the force it was.
+    /// After the pressure has gone from one value to another, in Pa, beside a friction that stays the force it was. That is so of the
+    /// bladder's friction on the strands, which goes with the pressure at one length; of that between strands, with its 5/3rd power, the force
+    /// still changes with the 2/3rd.
     fn stuck(self, from_pa: f64, to_pa: f64) -> Self {
         let times = from_pa.max(STICKS_FROM_PA) / to_pa.max(STICKS_FROM_PA);
         let stuck = |state: f64| (times * state).clamp(-STICKS_UP_TO, STICKS_UP_TO);
