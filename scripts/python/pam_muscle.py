@@ -977,9 +977,10 @@ def law_of(muscle):
     """How the direction is found for a muscle."""
     thresholds = muscle.model["direction"]
     standstill = thresholds.get("standstill", {"slides": {"over_pa": 0.0}})
-    slides = {"over_pa": None} if isinstance(standstill, str) else standstill["slides"]
+    law = {} if isinstance(standstill, str) else standstill
+    slides, relaxes = law.get("slides", {"over_pa": None}), law.get("relaxes")
     travels_m = thresholds.get("held_m", 0.0), thresholds.get("turn_m", 0.0)
-    at_rest = slides["over_pa"], slides.get("share", 1.0), standstill == "sticks"
+    at_rest = slides["over_pa"], slides.get("share", 1.0), standstill == "sticks", relaxes
     return Law(thresholds["length_m"], thresholds["pressure_pa"], *travels_m, *at_rest)
 
 
@@ -1005,7 +1006,8 @@ def directions_of(recording, muscle):
 
 @dataclasses.dataclass
 class Law:
-    """How the direction is found, in SI; `over_pa` is None where friction is held at standstill or sticks, `share` what of it slides."""
+    """How the direction is found, in SI; `over_pa` is None where friction does not slide at standstill, `share` what of it does, and
+    `relaxes` None or the time constant and the share that stays."""
 
     length_m: float
     pressure_pa: float
@@ -1014,6 +1016,12 @@ class Law:
     over_pa: float
     share: float
     sticks: bool
+    relaxes: dict
+
+    def is_moved(self):
+        """Whether friction moves little by little at a standstill."""
+        slides = self.over_pa is not None and (self.over_pa > 0.0 or self.share < 1.0)
+        return slides or self.sticks or self.relaxes is not None
 
 
 def hundredths(state):
@@ -1039,8 +1047,9 @@ def beginning(recording, rows, law, neither_n, one_n):
     for index in range(-20, 21):
         state = index / 20
         middles = np.full(len(smooth_pa), state)
-        if law.sticks or law.over_pa is not None and (law.over_pa > 0.0 or law.share < 1.0):
-            middles = np.array([0.5 * (low + high) for low, high in rest_bounds(smooth_pa, law, (state, state))])
+        if law.is_moved():
+            bounds = rest_bounds(recording.time_s[rows], smooth_pa, law, (state, state))
+            middles = np.array([0.5 * (low + high) for low, high in bounds])
         left = np.cumsum((without_n - middles * with_n) ** 2)[-1]
         if left < least:
             best, least = [hundredths(middle) for middle in middles], left
@@ -1067,8 +1076,9 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     stills = [still for still in stills if not never_rests(shortening[still.start : still.stop], law.length_m)
               and not goes_over(shortening, still, most, NOISE * law.length_m)]  # fmt: skip
     noise_m = NOISE * law.length_m / math.sqrt(2 * half + 1)
-    pushed = [pushed_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
-    pushed = [rows for rows in pushed if rows is not None]
+    held = [held_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
+    held = [rows for rows in held if rows is not None]
+    pushed = [rows for rows in held if np.ptp(pressure[rows.start : rows.stop]) > law.pressure_pa]
     slides = law.over_pa is not None and (law.over_pa > 2.0 * law.pressure_pa or law.share < 1.0)
     if law.over_pa is not None and not slides:
         for still in pushed:
@@ -1079,10 +1089,12 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
             rest = next((around.stop - still.stop for around in stills if still.start in around), 0)
             carry_on(marks, still.stop, before, rest + 2 * half)
     bounds = [(float(mark), float(mark)) if mark else carried for mark in marks]
-    if slides or law.sticks:
-        for still in pushed:
+    moved = held if law.relaxes is not None else pushed if law.over_pa is not None or law.sticks else []
+    if slides or law.sticks or law.relaxes is not None:
+        for still in moved:
+            rows = slice(still.start, still.stop)
             before = bounds[still.start - 1] if still.start > 0 else carried
-            bounds[still.start : still.stop] = rest_bounds(pressure[still.start : still.stop], law, before)
+            bounds[rows] = rest_bounds(time_s[rows], pressure[rows], law, before)
             unmoved = still.stop
             while unmoved < n and marks[unmoved] == 0:
                 bounds[unmoved] = bounds[still.stop - 1]
@@ -1090,13 +1102,12 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     # A parabola over n values leaves 2.25 / n of the variance in the middle one.
     values = 2.25 * (NOISE * law.length_m / 4e-6) ** 2
     longest = Window(time_s, min(0.5 * values * period_s, 0.15)).half
-    slid = [] if law.over_pa is None and not law.sticks else pushed
     path, slow = path_of(time_s, shortening, (longest, most), NOISE * law.length_m, turns_of(bounds, pushed))
     white_m = 1.5 * NOISE * law.length_m / math.sqrt(2 * longest + 1)
     wanders_m = sorted(rests_within(path, still)[1] for still in stills)
     path_noise_m = max(white_m, wanders_m[len(wanders_m) // 2] if wanders_m else 0.0)
     reach = min(max(int(math.floor(0.25 / period_s + 0.5)), 2 * half), 500)
-    turn_over(path.tolist(), slow, path_noise_m, law, reach, carried, slid, bounds)
+    turn_over(path.tolist(), slow, path_noise_m, law, reach, carried, moved, bounds)
     return bounds
 
 
@@ -1120,9 +1131,9 @@ STICKS_UP_TO = 5.0  # times what a motion would give friction at the same pressu
 STICKS_FROM_PA = 1e3
 
 
-def rest_bounds(pressure, law, before):
-    """Friction that the pressure moves: a stop that gives way from one sign to the other over `law.over_pa`, or up to a share, or what
-    sticks at the force that it has."""
+def rest_bounds(time_s, pressure, law, before):
+    """Friction at a standstill: a stop that gives way from one sign to the other over `law.over_pa`, or up to a share, or what
+    sticks at the force that it has, or relaxes to a share of what it was."""
 
     def stuck(state, times):
         return max(-STICKS_UP_TO, min(times * state, STICKS_UP_TO))
@@ -1131,8 +1142,12 @@ def rest_bounds(pressure, law, before):
         return max(state, min(state + by, law.share)) if by > 0.0 else min(state, max(state + by, -law.share))
 
     (low, high), last_pa, bounds = before, float(pressure[0]), []
-    for pressure_pa in pressure.tolist():
-        if law.sticks:
+    for now_s, pressure_pa in zip(time_s.tolist(), pressure.tolist()):
+        if law.relaxes is not None:
+            to = law.relaxes["to"]
+            share = to + (1.0 - to) * math.exp(-(now_s - float(time_s[0])) / law.relaxes["time_constant_s"])
+            low, high = share * before[0], share * before[1]
+        elif law.sticks:
             times = max(last_pa, STICKS_FROM_PA) / max(pressure_pa, STICKS_FROM_PA)
             low, high = stuck(low, times), stuck(high, times)
         else:
@@ -1408,9 +1423,9 @@ def rests_within(values, still):
     return level, math.sqrt(((middle - level) ** 2).sum() / len(middle))
 
 
-def pushed_rows(stills, index, contraction, noise_m, pressure, threshold_pa):
-    """Where in a standstill the pressure moves while the length rests; None where it does not. The end of a motion and the
-    beginning of the next are left to the length."""
+def held_rows(stills, index, contraction, noise_m, pressure, threshold_pa):
+    """Where in a standstill the length rests; None where it does not. The end of a motion and the beginning of the next are left to
+    the length."""
     still, n = stills[index], len(stills[index])
     level, spread_m = rests_within(contraction, still)
     moves_m = 3.0 * max(noise_m, spread_m)
@@ -1424,7 +1439,7 @@ def pushed_rows(stills, index, contraction, noise_m, pressure, threshold_pa):
         start += moving_rows(deviations_m, pressures_pa, moves_m, threshold_pa)
     if before_motion:
         stop -= moving_rows(deviations_m[::-1], pressures_pa[::-1], moves_m, threshold_pa)
-    return range(start, stop) if start < stop and np.ptp(pressure[start:stop]) > threshold_pa else None
+    return range(start, stop) if start < stop else None
 
 
 def moving_rows(deviations_m, pressures_pa, moves_m, threshold_pa):

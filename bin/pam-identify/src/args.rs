@@ -99,8 +99,9 @@ pub(crate) struct Args {
     pub(crate) friction: Option<FrictionArg>,
 
     /// What friction does while the length stands still: held (its sign; its size follows the pressure), sticks (at the
-    /// force that it has), follows (the pressure, at once), or the kPa of pressure over which it turns over, with the
-    /// share of it that does where that is not all (40:0.6); by default what fits the recordings best.
+    /// force that it has), relaxes (within so many seconds, to a share that stays: relaxes:3:0.5), follows (the pressure,
+    /// at once), or the kPa of pressure over which it turns over, with the share of it that does where that is not all
+    /// (40:0.6); by default what fits the recordings best, but for one that relaxes, which a diagnosis judges.
     #[arg(long, value_name = "LAW", value_parser = standstill)]
     pub(crate) standstill: Option<Standstill>,
 
@@ -244,7 +245,8 @@ impl FrictionArg {
     }
 }
 
-/// `held`, `sticks`, `follows`, or a pressure in kPa and, after a colon, a share.
+/// `held`, `sticks`, `follows`, `relaxes` with the seconds and the share that stays after colons, or a pressure in kPa and, after a colon, a
+/// share.
 fn standstill(text: &str) -> Result<Standstill, String> {
     match text {
         "held" => return Ok(Standstill::Held),
@@ -252,12 +254,26 @@ fn standstill(text: &str) -> Result<Standstill, String> {
         "follows" => return Ok(Standstill::AT_ONCE),
         _ => {}
     }
+    if let Some(text) = text.strip_prefix("relaxes:") {
+        let (time_constant_s, to) = text.split_once(':').unwrap_or((text, "0"));
+        return match (time_constant_s.parse::<f64>(), to.parse::<f64>()) {
+            (Ok(time_constant_s), Ok(to))
+                if time_constant_s > 0.0 && time_constant_s.is_finite() && (0.0..1.0).contains(&to) =>
+            {
+                Ok(Standstill::Relaxes { time_constant_s, to })
+            }
+            _ => Err("expected seconds after relaxes:, with the share that stays, less than 1, after a colon \
+                      (relaxes:3:0.5)"
+                .to_owned()),
+        };
+    }
     let (over_kpa, share) = text.split_once(':').unwrap_or((text, "1"));
     match (over_kpa.parse::<f64>(), share.parse::<f64>()) {
         (Ok(over_kpa), Ok(share)) if over_kpa > 0.0 && over_kpa.is_finite() && share > 0.0 && share <= 1.0 => {
             Ok(Standstill::Slides { over_pa: over_kpa * 1e3, share })
         }
-        _ => Err("expected held, sticks, follows, or a pressure in kPa, with a share up to 1 after a colon (40:0.6)"
+        _ => Err("expected held, sticks, follows, relaxes with seconds after a colon (relaxes:3), or a pressure in kPa, \
+                  with a share up to 1 after a colon (40:0.6)"
             .to_owned()),
     }
 }

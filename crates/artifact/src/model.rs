@@ -182,6 +182,16 @@ impl ModelArtifact {
                 number(share)
             ));
         }
+        if let Standstill::Relaxes { time_constant_s, to } = self.direction.standstill
+            && !(time_constant_s > 0.0 && (0.0..1.0).contains(&to))
+        {
+            return Err(format!(
+                "friction at standstill that relaxes within {} s, to {} of it: a time constant is positive, and what stays from 0 on and \
+                 less than 1",
+                number(time_constant_s),
+                number(to)
+            ));
+        }
         for (index, entry) in self.effects.iter().enumerate() {
             let term = entry.term()?;
             // Events may come again, and so may terms without a name; what belongs to muscle or bench is there or not.

@@ -18,9 +18,13 @@ use crate::search::Found;
 use crate::track::Track;
 
 /// Laws that are compared.
-const LAWS: [Standstill; 6] = [
+const LAWS: [Standstill; 10] = [
     Standstill::Held,
     Standstill::Sticks,
+    Standstill::Relaxes { time_constant_s: 2.0, to: 0.0 },
+    Standstill::Relaxes { time_constant_s: 2.0, to: 0.5 },
+    Standstill::Relaxes { time_constant_s: 8.0, to: 0.0 },
+    Standstill::Relaxes { time_constant_s: 8.0, to: 0.5 },
     Standstill::AT_ONCE,
     Standstill::Slides { over_pa: 2e4, share: 1.0 },
     Standstill::Slides { over_pa: 5e4, share: 1.0 },

@@ -83,12 +83,15 @@ fn an_effect_of_ones_own_stands_in_the_header_under_its_equation() {
     }
 }
 
-/// The model with friction that sticks at standstill.
-fn sticking(model: &str) -> String {
+/// The model with another law of friction at standstill.
+fn at_standstill(model: &str, law: &str) -> String {
     let slides = "{\"slides\": {\"over_pa\": 40000.0}}";
     assert!(model.contains(slides), "{model}");
-    model.replace(slides, "\"sticks\"")
+    model.replace(slides, law)
 }
+
+const STICKS: &str = "\"sticks\"";
+const RELAXES: &str = "{\"relaxes\": {\"time_constant_s\": 2.0, \"to\": 0.3}}";
 
 #[test]
 fn without_the_future_the_direction_is_late_and_no_more() {
@@ -98,9 +101,9 @@ fn without_the_future_the_direction_is_late_and_no_more() {
     let desk = Desk::new();
     // The shorter the strokes, the larger the share of them in which a turn has not been noticed yet: minor loops go down to
     // 1 mm, and the threshold is 0.15 mm. A rest is noticed a second late.
-    let sticks = sticking(&model(&[]));
+    let [sticks, relaxes] = [STICKS, RELAXES].map(|law| at_standstill(&model(&[]), law));
     let logs = [("isobaric-triangles", 3.0), ("length-steps", 3.0), ("minor-loops", 6.0)];
-    for (law, logs) in [(model(&[]), &logs[..]), (sticks, &[("isometric-ramps", 6.0)][..])] {
+    for (law, logs) in [(model(&[]), &logs[..]), (sticks, &[("isometric-ramps", 6.0)][..]), (relaxes, &logs[1..2])] {
         desk.write("model.json", &law);
         desk.exported("--model model.json --c muscle.h --quiet");
         compile(&desk, "muscle");
@@ -217,13 +220,13 @@ fn python_agrees_with_pam_predict_on_every_effect_from_file_to_force() {
         desk.write(&format!("{log}.json"), &desk.read("presliding_hysteresis.json"));
         logs.push(vectors(log, log));
     }
-    // Friction that slides partly while the length rests, or sticks, and a rest after a gap, of which nothing is known but its force.
+    // Friction that slides partly while the length rests, or sticks, or relaxes, and a rest after a gap, of which nothing is known but its force.
     let slides = desk.read("presliding_hysteresis.json");
     let partly = slides.replace("\"over_pa\": 40000.0", "\"over_pa\": 40000.0, \"share\": 0.6");
-    let sticks = sticking(&slides);
+    let [sticks, relaxes] = [STICKS, RELAXES].map(|law| at_standstill(&slides, law));
     desk.write("rest.csv", &with_a_rest_after_a_gap(&desk.read("minor-loops.csv")));
-    for (name, law) in [("partly", &partly), ("sticks", &sticks)] {
-        for log in ["isometric-ramps", "rest"] {
+    for (name, law) in [("partly", &partly), ("sticks", &sticks), ("relaxes", &relaxes)] {
+        for log in ["isometric-ramps", "length-steps", "rest"] {
             let name = format!("{name}-{log}");
             desk.write(&format!("{name}.json"), law);
             logs.push(vectors(&name, log));

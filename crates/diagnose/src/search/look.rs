@@ -1,7 +1,7 @@
 //! A look at the catalogue on top of what was taken.
 
 use pam_muscle::Coordinate;
-use pam_muscle::effects::{Effect, Role, Seen};
+use pam_muscle::effects::{AugmentedModel, Effect, Role, Seen};
 
 use super::ends::{self, Ends};
 use super::settle::settle;
@@ -45,11 +45,14 @@ const OF_THE_ODD: f64 = 0.5;
 /// nine wrong ones, five of them in healthy muscles, and in one of 13 right ones; with half of it in six and one, with its double in eight
 /// and four.
 const BEYOND_THE_BRAID: f64 = 0.5;
-/// Share of the load that friction has to be, in the middle of the contractions that were seen, to be told from another form of the
+/// Share of the load that friction has to be to be told from another form of the
 /// friction of the braid at all: a coefficient of 0.05 and a turn of 0.3 rad. Of 34 looked-at names five of eight wrong ones are less (those
 /// of three healthy muscles of a stranger, whose friction falls with the contraction as Hildebrandt has it, of one whose fixture gives, and
 /// of one with a mass), and none of 26 right ones.
 const LEAST_OF_THE_LOAD: f64 = 0.015;
+/// Share of the load from which on friction that is all there is is none of another form of the friction of the braid: a coefficient of
+/// 0.1 and a turn of 0.3 rad. Between this and [`LEAST_OF_THE_LOAD`] the evidence decides.
+const NONE_OF_THE_BRAID: f64 = 0.03;
 
 /// What stands for the odd part of the static map.
 pub(super) enum OddStatic {
@@ -223,23 +226,35 @@ impl Look<'_> {
         let friction = trials.iter().find(stands)?;
         // Beside another effect it is likelier that eq. 11 lacks the shape of the friction than that two effects are there. Of 13 looked-at
         // cases in which it stood so five wrong names and a right one go by that.
-        let more = if best.state.guesses.is_empty() { BEYOND_THE_BRAID } else { CLEARLY };
+        let is_alone = best.state.guesses.is_empty();
+        let more = if is_alone { BEYOND_THE_BRAID } else { CLEARLY };
         let named = settle(&beside, &bare, friction)?;
-        if self.is_light(&named) || friction.log_ratio <= self.friction_by_contraction(&beside, &bare) + more {
+        let of_the_load = self.share_of_the_load(&named);
+        let is_beyond_the_braid = || friction.log_ratio > self.friction_by_contraction(&beside, &bare) + more;
+        let is_heavy = is_alone && of_the_load >= NONE_OF_THE_BRAID;
+        if of_the_load < LEAST_OF_THE_LOAD || !is_heavy && !is_beyond_the_braid() {
             return Some(OddStatic::AsWell(friction.guess.id()));
         }
         again(&self.plain.beside(&even), &named).map(|named| OddStatic::Named(Box::new(named)))
     }
 
-    /// Whether the friction that was named last is less than [`LEAST_OF_THE_LOAD`].
-    fn is_light(&self, named: &Judged) -> bool {
-        let (low, high) = range(self.coordinates.of_kind(Coordinate::Contraction), &self.plain.track.counted);
-        match named.state.terms().last().map(|term| &term.amplitudes[..]) {
-            Some([of_the_load, with_contraction]) => {
-                of_the_load + with_contraction * 0.5 * (low + high) < LEAST_OF_THE_LOAD
-            }
-            _ => false,
-        }
+    /// Share of the load that the friction is which was named last: the one with which it leaves least of it where it was seen.
+    fn share_of_the_load(&self, named: &Judged) -> f64 {
+        let state = &named.state;
+        let mut others = state.terms();
+        let friction = others.split_off(others.len().saturating_sub(1));
+        let track = self.plain.track;
+        let [with, without] = [friction, Vec::new()].map(|more| {
+            let terms = others.iter().cloned().chain(more).collect();
+            track.modelled_n(&AugmentedModel::new(state.model.clone(), terms))
+        });
+        let counted = (0..track.n()).filter(|&at| track.counted[at]);
+        let (product, square) = counted.fold((0.0, 0.0), |(product, square), at| {
+            let moment = track.instants[at].moment;
+            let load_n = state.model.force_n(moment.pressure_pa, moment.length_m, 0.0).max(0.0) * moment.direction;
+            (product + (without[at] - with[at]) * load_n, square + load_n * load_n)
+        });
+        if square > 0.0 { product / square } else { 0.0 }
     }
 
     /// Evidence for friction whose coefficient changes with the contraction, beside `bare`.

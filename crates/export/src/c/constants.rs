@@ -105,8 +105,12 @@ pub(super) fn parameter(id: &str, name: &str) -> String {
 pub(super) fn of_direction(artifact: &ModelArtifact, model: &ForceModel) -> Vec<(String, f64)> {
     let thresholds = artifact.direction;
     let (slides, over_pa, share) = match thresholds.standstill {
-        Standstill::Held | Standstill::Sticks => (0.0, 0.0, 1.0),
+        Standstill::Held | Standstill::Sticks | Standstill::Relaxes { .. } => (0.0, 0.0, 1.0),
         Standstill::Slides { over_pa, share } => (1.0, over_pa, share),
+    };
+    let (relaxes, within_s, to) = match thresholds.standstill {
+        Standstill::Relaxes { time_constant_s, to } => (1.0, time_constant_s, to),
+        _ => (0.0, 1.0, 1.0),
     };
     let sticks = f64::from(u8::from(thresholds.standstill == Standstill::Sticks));
     let rest_slide_m_per_pa = model.slide_m_per_pa(model.muscle().rest_length_m);
@@ -119,6 +123,9 @@ pub(super) fn of_direction(artifact: &ModelArtifact, model: &ForceModel) -> Vec<
         ("STANDSTILL_OVER_PA", over_pa),
         ("STANDSTILL_SHARE", share),
         ("STANDSTILL_STICKS", sticks),
+        ("STANDSTILL_RELAXES", relaxes),
+        ("STANDSTILL_TIME_CONSTANT_S", within_s),
+        ("STANDSTILL_RELAXES_TO", to),
         ("STICKS_UP_TO", STICKS_UP_TO),
         ("STICKS_FROM_PA", STICKS_FROM_PA),
         ("REST_SLIDE_THRESHOLD_M", rest_slide_m_per_pa * thresholds.pressure_pa),

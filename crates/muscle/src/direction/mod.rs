@@ -16,7 +16,7 @@
 //!
 //! A length that stays within the play for a second stands still, unless it turns slowly or crawls all the while.
 //! What friction does where it stands still and the pressure moves is a property of the muscle ([`Standstill`]): it
-//! keeps its last sign, or sticks at the force that it has, or the strands slide under rising (+1, as if contracting) and falling
+//! keeps its last sign, or sticks at the force that it has, or relaxes, or the strands slide under rising (+1, as if contracting) and falling
 //! pressure (-1), at once or only after the pressure has turned back by some amount.
 //! At the beginning of a segment nothing is known of it until the first
 //! motion: the state is zero there and the samples are unsettled. In a segment in which nothing ever moves it stays zero, and
@@ -241,12 +241,14 @@ impl Direction {
             if unknown.is_empty() {
                 continue;
             }
-            let (mut pressure_pa, mut without_n, mut with_n) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut time_s, mut pressure_pa) = (Vec::new(), Vec::new());
+            let (mut without_n, mut with_n) = (Vec::new(), Vec::new());
             for part in recording.samples.parts(unknown.clone()) {
                 let (chunk, rows) = part?;
                 for row in rows {
                     let (pressure, length) = (chunk.pressure_pa()[row], chunk.length_m()[row]);
                     let [neither_n, one_n] = forces_n(chunk.first_row() + row, pressure, length);
+                    time_s.push(chunk.time_s()[row]);
                     pressure_pa.push(pressure);
                     without_n.push(chunk.force_n()[row] - neither_n);
                     with_n.push(one_n - neither_n);
@@ -261,7 +263,7 @@ impl Direction {
             let paths = beginnings.map(|state| {
                 let mut states = vec![State { bounds: Bounds::at(state), is_settled: false }; unknown.len()];
                 if standstill.is_moved() {
-                    rest(&smooth_pa, standstill, Bounds::at(state), &mut states);
+                    rest((&time_s, &smooth_pa), standstill, Bounds::at(state), &mut states);
                 }
                 (left(&states), states)
             });

@@ -1,4 +1,4 @@
-//! Where the length stands still, and where the pressure moves while it does.
+//! Where the length stands still, and whether the pressure moves while it does.
 
 use std::ops::Range;
 
@@ -71,12 +71,12 @@ pub(super) fn never_rests(values: &[f64], threshold: f64, noise: f64) -> bool {
 /// Deviations of a length that rests beyond which it moves.
 const MOVES: f64 = 3.0;
 
-/// Where in the standstill `index` of `stills` the pressure moves while the length rests; none where it does not.
+/// Where in the standstill `index` of `stills` the length rests; none where it does not.
 ///
 /// The end of a motion and the beginning of the next are within a threshold as well. A pressure that settles together with the
 /// length, or sets off with it, moves no strand that the length does not: those rows are left to the length. `noise_m` is the
 /// deviation of `contraction` at rest.
-pub(super) fn pushed(
+pub(super) fn held(
     stills: &[Range<usize>],
     index: usize,
     contraction: &[f64],
@@ -100,7 +100,12 @@ pub(super) fn pushed(
     if before_motion {
         rest.end -= moving_rows(n, moves_m, threshold_pa, &|at| (deviation_m(last - at), pressure[last - at]));
     }
-    (rest.start < rest.end && range(&pressure[rest.clone()]) > threshold_pa).then_some(rest)
+    (rest.start < rest.end).then_some(rest)
+}
+
+/// Whether `pressure` moves where the length rests.
+pub(super) fn is_pushed(pressure: &[f64], threshold_pa: f64) -> bool {
+    range(pressure) > threshold_pa
 }
 
 /// Mean and deviation of `values` in the middle half of a standstill.

@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::rest::{never_rests, pushed, standstills};
+use super::rest::{held, is_pushed, never_rests, standstills};
 use super::slow_turn::SlowTurn;
 use super::thresholds::{Driver, Standstill, Thresholds};
 use super::travel::{Path, turn_over, turns_of};
@@ -65,6 +65,11 @@ impl Bounds {
         Self { low: slid(self.low), high: slid(self.high) }
     }
 
+    /// A share of it.
+    fn relaxed(self, share: f64) -> Self {
+        Self { low: share * self.low, high: share * self.high }
+    }
+
     /// After the pressure has gone from one value to another, in Pa, beside a friction that stays the force it was. That is so of the
     /// bladder's friction on the strands, which goes with the pressure at one length; of that between strands, with its 5/3rd power, the force
     /// still changes with the 2/3rd.
@@ -95,7 +100,9 @@ pub(super) struct Stretch<'a> {
     pressure: Vec<f64>,
     half: usize,
     resting: Vec<Range<usize>>,
-    /// Where the pressure moves while the length rests.
+    /// Where in them the length rests, without the motions on either side.
+    held: Vec<Range<usize>>,
+    /// Those of them in which the pressure moves.
     pushed: Vec<Range<usize>>,
     /// Half of the window that a slow-down is measured against, in rows: within as many a turn lies.
     long: usize,
@@ -118,7 +125,7 @@ impl<'a> Stretch<'a> {
         let long = long_window(period_s, half);
         let pressure = moving_average(pressure_pa, half);
         let nothing = || (Vec::new(), Vec::new());
-        let ((shortening, contraction), (resting, pushed)) = match driver {
+        let ((shortening, contraction), (resting, held)) = match driver {
             Driver::Pressure => (nothing(), (Vec::new(), Vec::new())),
             Driver::Motion => {
                 let shortening: Vec<f64> = length_m.iter().map(|length| -length).collect();
@@ -132,11 +139,13 @@ impl<'a> Stretch<'a> {
                 });
                 // Deviation of an average of the length at rest.
                 let noise_m = noise_m / ((2 * half + 1) as f64).sqrt();
-                let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
-                let pushed = (0..resting.len()).filter_map(push).collect();
-                ((shortening, contraction), (resting, pushed))
+                let rests = |index| held(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
+                let held = (0..resting.len()).filter_map(rests).collect();
+                ((shortening, contraction), (resting, held))
             }
         };
+        let moves = |still: &&Range<usize>| is_pushed(&pressure[still.start..still.end], thresholds.pressure_pa);
+        let pushed = held.iter().filter(moves).cloned().collect();
         Self {
             time_s,
             pressure_pa,
@@ -148,6 +157,7 @@ impl<'a> Stretch<'a> {
             pressure,
             half,
             resting,
+            held,
             pushed,
             long,
             paths: Mutex::default(),
@@ -179,15 +189,25 @@ impl<'a> Stretch<'a> {
         slow.doubt(&self.resting, *thresholds, &mut marks);
         let mut states = from_marks(&marks, carried);
         if !follows && standstill.is_moved() {
-            for still in &self.pushed {
+            for still in self.moved(standstill) {
                 let before = if still.start > 0 { states[still.start - 1].bounds } else { carried };
-                rest(&pressure[still.clone()], standstill, before, &mut states[still.clone()]);
+                let along = (&self.time_s[still.clone()], &pressure[still.clone()]);
+                rest(along, standstill, before, &mut states[still.clone()]);
                 let after = states[still.end - 1];
                 let unmoved = marks[still.end..].iter().take_while(|mark| **mark == 0).count();
                 states[still.end..still.end + unmoved].fill(after);
             }
         }
         states
+    }
+
+    /// Where friction moves at a standstill under a law of `standstill`.
+    fn moved(&self, standstill: Standstill) -> &[Range<usize>] {
+        match standstill {
+            Standstill::Held => &[],
+            Standstill::Relaxes { .. } => &self.held,
+            Standstill::Sticks | Standstill::Slides { .. } => &self.pushed,
+        }
     }
 
     /// The path along which friction turns over after the turns of `states`; none where no length says how it does.
@@ -216,8 +236,7 @@ impl<'a> Stretch<'a> {
     ) -> Vec<State> {
         let mut states = states.to_vec();
         if let Some(path) = path {
-            let pushed = if thresholds.standstill == Standstill::Held { &[][..] } else { &self.pushed };
-            turn_over(path, thresholds, self.long, carried, pushed, &mut states);
+            turn_over(path, thresholds, self.long, carried, self.moved(thresholds.standstill), &mut states);
         }
         states
     }
@@ -243,16 +262,24 @@ fn from_marks(marks: &[i8], carried: Bounds) -> Vec<State> {
     marks.iter().map(state).collect()
 }
 
-/// Friction at a standstill as the smooth `pressure` moves it. Where it slides it is a stop that gives way from one sign to the other, and
-/// what it was before the standstill need not be known: once the pressure has moved far enough, it is. Where it sticks, the less the
-/// pressure is the more of what that would give it is left.
-pub(super) fn rest(pressure: &[f64], standstill: Standstill, before: Bounds, states: &mut [State]) {
+/// Friction at a standstill along `time_s` and the smooth `pressure`. Where it slides it is a stop that gives way from one sign to the
+/// other, and what it was before the standstill need not be known: once the pressure has moved far enough, it is. Where it sticks, the less
+/// the pressure is the more of what that would give it is left; where it relaxes, less and less is left of what it was `before`.
+pub(super) fn rest(
+    (time_s, pressure): (&[f64], &[f64]),
+    standstill: Standstill,
+    before: Bounds,
+    states: &mut [State],
+) {
     let mut bounds = before;
     let mut last_pa = pressure[0];
-    for (state, &pressure_pa) in states.iter_mut().zip(pressure) {
+    for (state, (&now_s, &pressure_pa)) in states.iter_mut().zip(time_s.iter().zip(pressure)) {
         bounds = match standstill {
             Standstill::Held => bounds,
             Standstill::Sticks => bounds.stuck(last_pa, pressure_pa),
+            Standstill::Relaxes { time_constant_s, to } => {
+                before.relaxed(to + (1.0 - to) * (-(now_s - time_s[0]) / time_constant_s).exp())
+            }
             Standstill::Slides { over_pa, share } => bounds.slid(2.0 * (pressure_pa - last_pa) / over_pa, share),
         };
         last_pa = pressure_pa;

@@ -13,6 +13,13 @@ pub enum Standstill {
     Held,
     /// It sticks: its force stays what the last motion left, whatever the pressure does.
     Sticks,
+    /// It relaxes, whatever the pressure does: a share of what the last motion left is forgotten with a time constant.
+    Relaxes {
+        /// In s.
+        time_constant_s: f64,
+        /// Share that stays, from 0 on and below 1.
+        to: f64,
+    },
     /// It follows the pressure, and has turned over once the pressure has turned back by so much.
     Slides {
         /// From one sign to the other, in Pa.
@@ -27,11 +34,11 @@ impl Standstill {
     /// Turned over by any change of the pressure that is not noise.
     pub const AT_ONCE: Self = Self::Slides { over_pa: 0.0, share: 1.0 };
 
-    /// Whether the pressure moves the state of friction little by little; of a pressure that it follows at once the sign is enough.
+    /// Whether the state of friction moves little by little at a standstill; of a pressure that it follows at once the sign is enough.
     pub(super) fn is_moved(self) -> bool {
         match self {
             Self::Held => false,
-            Self::Sticks => true,
+            Self::Sticks | Self::Relaxes { .. } => true,
             Self::Slides { over_pa, share } => over_pa > 0.0 || share < 1.0,
         }
     }
@@ -41,6 +48,10 @@ impl Standstill {
         match self {
             Self::Held => "friction is held at standstill".to_owned(),
             Self::Sticks => "friction sticks at standstill, at the force that the last motion left".to_owned(),
+            Self::Relaxes { time_constant_s, to } => {
+                let relaxes = format!("friction relaxes at standstill within {time_constant_s:.1} s");
+                if to > 0.0 { format!("{relaxes}, to {:.0} %", 100.0 * to) } else { relaxes }
+            }
             Self::Slides { over_pa, share } => {
                 let turns = if over_pa > 0.0 {
                     format!("friction at standstill turns over with {:.1} kPa of pressure", over_pa * 1e-3)

@@ -31,7 +31,8 @@ typedef struct {
     double farthest_m;                     /* contraction from which a turn is measured */
     double at_turn, travel_m;              /* state at the last turn, and travel since */
     double still_s, still_low_m, still_high_m; /* since when the contraction lies between the two */
-    double still_state, still_low_pa, still_high_pa; /* friction if that is a standstill */
+    double still_from, still_state;        /* friction when that began, and now if it is a standstill */
+    double still_low_pa, still_high_pa;
     double by_pressure_m;
 } pam_observer;
 
@@ -56,14 +57,17 @@ static inline double pam_backlash_follow(pam_backlash_filter *filter, double noi
 }
 
 /* Friction while the length may stand still: at once with any pressure beyond noise, or sliding over PAM_STANDSTILL_OVER_PA,
-   up to PAM_STANDSTILL_SHARE of it, or stuck at the force that it has. */
-static inline void pam_still_follow(pam_observer *o, double pressure_step_pa)
+   up to PAM_STANDSTILL_SHARE of it, or stuck at the force that it has, or relaxing to a share of what it was. */
+static inline void pam_still_follow(pam_observer *o, double step_s, double pressure_step_pa)
 {
     const double pressure_pa = o->pressure.value;
-    if (!PAM_STANDSTILL_SLIDES && !PAM_STANDSTILL_STICKS) {
+    if (!PAM_STANDSTILL_SLIDES && !PAM_STANDSTILL_STICKS && !PAM_STANDSTILL_RELAXES) {
         return;
     }
-    if (PAM_STANDSTILL_STICKS) {
+    if (PAM_STANDSTILL_RELAXES) {
+        const double left = exp(-step_s / PAM_STANDSTILL_TIME_CONSTANT_S), to = PAM_STANDSTILL_RELAXES_TO * o->still_from;
+        o->still_state = to + left * (o->still_state - to);
+    } else if (PAM_STANDSTILL_STICKS) {
         const double from_pa = fmax(pressure_pa - pressure_step_pa, PAM_STICKS_FROM_PA);
         const double stuck = o->still_state * from_pa / fmax(pressure_pa, PAM_STICKS_FROM_PA);
         o->still_low_pa = fmin(o->still_low_pa, pressure_pa);
@@ -92,7 +96,7 @@ static inline void pam_restart_still(pam_observer *o, double contraction_m)
     o->still_s = o->time_s;
     o->still_low_m = o->still_high_m = contraction_m;
     o->still_low_pa = o->still_high_pa = o->pressure.value;
-    o->still_state = o->state;
+    o->still_from = o->still_state = o->state;
     o->resting = 0;
 }
 
@@ -164,10 +168,10 @@ static inline pam_moment pam_observe(pam_observer *o, double step_s, double pres
         }
         pam_restart_still(o, contraction_m);
     } else {
-        pam_still_follow(o, pressure_step_pa);
+        pam_still_follow(o, step_s, pressure_step_pa);
     }
-    if ((PAM_STANDSTILL_SLIDES || PAM_STANDSTILL_STICKS) && o->time_s - o->still_s >= PAM_STANDSTILL_S
-        && (o->resting || o->still_high_pa - o->still_low_pa > PAM_PRESSURE_THRESHOLD_PA)) {
+    if ((PAM_STANDSTILL_SLIDES || PAM_STANDSTILL_STICKS || PAM_STANDSTILL_RELAXES) && o->time_s - o->still_s >= PAM_STANDSTILL_S
+        && (o->resting || PAM_STANDSTILL_RELAXES || o->still_high_pa - o->still_low_pa > PAM_PRESSURE_THRESHOLD_PA)) {
         o->resting = 1;
         o->state = o->still_state;
     } else {

@@ -188,6 +188,30 @@ fn friction_that_sticks_is_the_same_force_at_every_pressure() {
 }
 
 #[test]
+fn friction_that_relaxes_forgets_a_share_of_itself_whatever_the_pressure_does_until_the_length_moves() {
+    let (pressure, length) = held_length();
+    let relaxes = Standstill::Relaxes { time_constant_s: 3.0, to: 0.4 };
+    let states_at = |pressure: &[f64], length: &[f64]| {
+        let thresholds = Thresholds { standstill: relaxes, ..THRESHOLDS };
+        states_of(&times(length.len()), pressure, length, thresholds, Driver::Motion, Bounds::UNKNOWN)
+    };
+    let still = vec![3e5; pressure.len()];
+    for pressure in [&pressure, &still] {
+        let states = states_at(pressure, &length);
+        // The length rests from the 1000th row on, at 200 Hz.
+        for row in [1100, 1300, 1600, 2500, 3900] {
+            let expected = 0.4 + 0.6 * (-(0.005 * (row as f64 - 1000.0)) / 3.0).exp();
+            let at = states[row].bounds.middle();
+            assert!((at - expected).abs() < 0.02, "row {row}: {at} where {expected} is left");
+        }
+    }
+    // On again the same way: all of it.
+    let on: Vec<f64> = length.iter().copied().chain((1..200).map(|row| length[3999] - 5e-5 * f64::from(row))).collect();
+    let states = states_at(&vec![3e5; on.len()], &on);
+    assert!(states[3990].bounds.middle() < 0.42 && states[4150].bounds.middle() > 0.99);
+}
+
+#[test]
 fn friction_that_slides_turns_over_with_so_much_pressure() {
     let (pressure, length) = held_length();
     let thresholds = Thresholds { standstill: Standstill::Slides { over_pa: 4e4, share: 1.0 }, ..THRESHOLDS };
