@@ -1076,9 +1076,8 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
     stills = [still for still in stills if not never_rests(shortening[still.start : still.stop], law.length_m)
               and not goes_over(shortening, still, most, NOISE * law.length_m)]  # fmt: skip
     noise_m = NOISE * law.length_m / math.sqrt(2 * half + 1)
-    held = [held_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
-    held = [rows for rows in held if rows is not None]
-    pushed = [rows for rows in held if np.ptp(pressure[rows.start : rows.stop]) > law.pressure_pa]
+    pushed = [pushed_rows(stills, index, contraction, noise_m, pressure, law.pressure_pa) for index in range(len(stills))]
+    pushed = [rows for rows in pushed if rows is not None]
     slides = law.over_pa is not None and (law.over_pa > 2.0 * law.pressure_pa or law.share < 1.0)
     if law.over_pa is not None and not slides:
         for still in pushed:
@@ -1089,7 +1088,9 @@ def bounds_of(time_s, pressure_pa, length_m, law, by_pressure, carried):
             rest = next((around.stop - still.stop for around in stills if still.start in around), 0)
             carry_on(marks, still.stop, before, rest + 2 * half)
     bounds = [(float(mark), float(mark)) if mark else carried for mark in marks]
-    moved = held if law.relaxes is not None else pushed if law.over_pa is not None or law.sticks else []
+    moved = pushed if law.over_pa is not None or law.sticks else []
+    if law.relaxes is not None:
+        moved = [rows for rows in (held_rows(still, contraction, noise_m) for still in stills) if rows]
     if slides or law.sticks or law.relaxes is not None:
         for still in moved:
             rows = slice(still.start, still.stop)
@@ -1423,12 +1424,24 @@ def rests_within(values, still):
     return level, math.sqrt(((middle - level) ** 2).sum() / len(middle))
 
 
-def held_rows(stills, index, contraction, noise_m, pressure, threshold_pa):
-    """Where in a standstill the length rests; None where it does not. The end of a motion and the beginning of the next are left to
-    the length."""
-    still, n = stills[index], len(stills[index])
+def held_rows(still, contraction, noise_m):
+    """Where in a standstill the length rests, without the end of the motion before it and the beginning of the next."""
+    level, moves_m = rest_and_motion(contraction, still, noise_m)
+    rests = [row for row in still if abs(contraction[row] - level) <= moves_m]
+    return range(rests[0], rests[-1] + 1) if rests else range(0)
+
+
+def rest_and_motion(contraction, still, noise_m):
+    """Level on which a length rests in a standstill, and how far from it it moves."""
     level, spread_m = rests_within(contraction, still)
-    moves_m = 3.0 * max(noise_m, spread_m)
+    return level, 3.0 * max(noise_m, spread_m)
+
+
+def pushed_rows(stills, index, contraction, noise_m, pressure, threshold_pa):
+    """Where in a standstill the pressure moves while the length rests; None where it does not. The end of a motion and the
+    beginning of the next are left to the length."""
+    still, n = stills[index], len(stills[index])
+    level, moves_m = rest_and_motion(contraction, still, noise_m)
     after_motion = still.start > 0 and (index == 0 or stills[index - 1].stop < still.start)
     following = stills[index + 1].start if index + 1 < len(stills) else math.inf
     before_motion = still.stop < len(contraction) and following > still.stop
@@ -1439,7 +1452,7 @@ def held_rows(stills, index, contraction, noise_m, pressure, threshold_pa):
         start += moving_rows(deviations_m, pressures_pa, moves_m, threshold_pa)
     if before_motion:
         stop -= moving_rows(deviations_m[::-1], pressures_pa[::-1], moves_m, threshold_pa)
-    return range(start, stop) if start < stop else None
+    return range(start, stop) if start < stop and np.ptp(pressure[start:stop]) > threshold_pa else None
 
 
 def moving_rows(deviations_m, pressures_pa, moves_m, threshold_pa):

@@ -1,4 +1,4 @@
-//! Where the length stands still, and whether the pressure moves while it does.
+//! Where the length stands still, and where the pressure moves while it does.
 
 use std::ops::Range;
 
@@ -71,12 +71,12 @@ pub(super) fn never_rests(values: &[f64], threshold: f64, noise: f64) -> bool {
 /// Deviations of a length that rests beyond which it moves.
 const MOVES: f64 = 3.0;
 
-/// Where in the standstill `index` of `stills` the length rests; none where it does not.
+/// Where in the standstill `index` of `stills` the pressure moves while the length rests; none where it does not.
 ///
 /// The end of a motion and the beginning of the next are within a threshold as well. A pressure that settles together with the
 /// length, or sets off with it, moves no strand that the length does not: those rows are left to the length. `noise_m` is the
 /// deviation of `contraction` at rest.
-pub(super) fn held(
+pub(super) fn pushed(
     stills: &[Range<usize>],
     index: usize,
     contraction: &[f64],
@@ -86,8 +86,7 @@ pub(super) fn held(
 ) -> Option<Range<usize>> {
     let still = &stills[index];
     let n = still.len();
-    let (level, spread) = rests_within(contraction, still);
-    let moves_m = MOVES * noise_m.max(spread);
+    let (level, moves_m) = rest_and_motion(contraction, still, noise_m);
     let after_motion = still.start > 0 && (index == 0 || stills[index - 1].end < still.start);
     let before_motion =
         still.end < contraction.len() && stills.get(index + 1).is_none_or(|next| next.start > still.end);
@@ -100,12 +99,22 @@ pub(super) fn held(
     if before_motion {
         rest.end -= moving_rows(n, moves_m, threshold_pa, &|at| (deviation_m(last - at), pressure[last - at]));
     }
-    (rest.start < rest.end).then_some(rest)
+    (rest.start < rest.end && range(&pressure[rest.clone()]) > threshold_pa).then_some(rest)
 }
 
-/// Whether `pressure` moves where the length rests.
-pub(super) fn is_pushed(pressure: &[f64], threshold_pa: f64) -> bool {
-    range(pressure) > threshold_pa
+/// Where in a standstill the length rests, without the end of the motion before it and the beginning of the next.
+pub(super) fn held(still: &Range<usize>, contraction: &[f64], noise_m: f64) -> Range<usize> {
+    let (level, moves_m) = rest_and_motion(contraction, still, noise_m);
+    let rests = |row: &usize| (contraction[*row] - level).abs() <= moves_m;
+    let first = still.clone().find(rests).unwrap_or(still.end);
+    let end = still.clone().rev().find(rests).map_or(first, |last| last + 1);
+    first..end
+}
+
+/// Level on which `contraction` rests in a standstill, and how far from it it moves.
+fn rest_and_motion(contraction: &[f64], still: &Range<usize>, noise_m: f64) -> (f64, f64) {
+    let (level, spread) = rests_within(contraction, still);
+    (level, MOVES * noise_m.max(spread))
 }
 
 /// Mean and deviation of `values` in the middle half of a standstill.

@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::rest::{held, is_pushed, never_rests, standstills};
+use super::rest::{held, never_rests, pushed, standstills};
 use super::slow_turn::SlowTurn;
 use super::thresholds::{Driver, Standstill, Thresholds};
 use super::travel::{Path, turn_over, turns_of};
@@ -102,7 +102,7 @@ pub(super) struct Stretch<'a> {
     resting: Vec<Range<usize>>,
     /// Where in them the length rests, without the motions on either side.
     held: Vec<Range<usize>>,
-    /// Those of them in which the pressure moves.
+    /// Where in them the pressure moves while it does.
     pushed: Vec<Range<usize>>,
     /// Half of the window that a slow-down is measured against, in rows: within as many a turn lies.
     long: usize,
@@ -125,8 +125,8 @@ impl<'a> Stretch<'a> {
         let long = long_window(period_s, half);
         let pressure = moving_average(pressure_pa, half);
         let nothing = || (Vec::new(), Vec::new());
-        let ((shortening, contraction), (resting, held)) = match driver {
-            Driver::Pressure => (nothing(), (Vec::new(), Vec::new())),
+        let ((shortening, contraction), [resting, held, pushed]) = match driver {
+            Driver::Pressure => (nothing(), [const { Vec::new() }; 3]),
             Driver::Motion => {
                 let shortening: Vec<f64> = length_m.iter().map(|length| -length).collect();
                 let contraction = moving_average(&shortening, half);
@@ -139,13 +139,13 @@ impl<'a> Stretch<'a> {
                 });
                 // Deviation of an average of the length at rest.
                 let noise_m = noise_m / ((2 * half + 1) as f64).sqrt();
-                let rests = |index| held(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
-                let held = (0..resting.len()).filter_map(rests).collect();
-                ((shortening, contraction), (resting, held))
+                let push = |index| pushed(&resting, index, &contraction, noise_m, &pressure, thresholds.pressure_pa);
+                let pushed = (0..resting.len()).filter_map(push).collect();
+                let held = resting.iter().map(|still| held(still, &contraction, noise_m));
+                let held = held.filter(|held| !held.is_empty()).collect();
+                ((shortening, contraction), [resting, held, pushed])
             }
         };
-        let moves = |still: &&Range<usize>| is_pushed(&pressure[still.start..still.end], thresholds.pressure_pa);
-        let pushed = held.iter().filter(moves).cloned().collect();
         Self {
             time_s,
             pressure_pa,
