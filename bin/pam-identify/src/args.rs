@@ -332,3 +332,19 @@ fn fixed(text: &str) -> Result<(Parameter, f64), String> {
     }
     Ok((parameter, parameter.from_artifact(value)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_law_at_standstill_is_a_word_or_a_number_with_a_share() {
+        assert_eq!(standstill("sticks"), Ok(Standstill::Sticks));
+        assert_eq!(standstill("40:0.6"), Ok(Standstill::Slides { over_pa: 4e4, share: 0.6 }));
+        assert_eq!(standstill("relaxes:3"), Ok(Standstill::Relaxes { time_constant_s: 3.0, to: 0.0 }));
+        assert_eq!(standstill("relaxes:3:0.5"), Ok(Standstill::Relaxes { time_constant_s: 3.0, to: 0.5 }));
+        for wrong in ["relaxes", "relaxes:", "relaxes:0", "relaxes:3:1", "relaxes:inf", "relaxes:3:-0.1", "40:1.5"] {
+            assert!(standstill(wrong).is_err(), "{wrong}");
+        }
+    }
+}

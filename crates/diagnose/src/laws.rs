@@ -1,7 +1,8 @@
 //! The law of friction at standstill, judged once more beside what was named.
 //!
 //! An identification chooses the law by what eq. 11 alone leaves, and an effect that is not in the model may have taken a part
-//! in that choice. Beside the effects and the static map the choice is theirs no longer.
+//! in that choice. Beside the effects and the static map the choice is theirs no longer. Friction that relaxes is judged here alone: rubber
+//! that relaxes changes the force of a hold in the same way, by what the last motion was.
 
 use pam_identification::error::IdentifyError;
 use pam_identification::prepare::Prepared;
@@ -17,7 +18,8 @@ use crate::problem::DiagnosisProblem;
 use crate::search::Found;
 use crate::track::Track;
 
-/// Laws that are compared.
+/// Laws that are compared. Friction that relaxes does so within 0.8 to 25 s in the muscles of two strangers, each within some three times of
+/// one of the two time constants.
 const LAWS: [Standstill; 10] = [
     Standstill::Held,
     Standstill::Sticks,
