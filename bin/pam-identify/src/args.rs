@@ -272,9 +272,11 @@ fn standstill(text: &str) -> Result<Standstill, String> {
         (Ok(over_kpa), Ok(share)) if over_kpa > 0.0 && over_kpa.is_finite() && share > 0.0 && share <= 1.0 => {
             Ok(Standstill::Slides { over_pa: over_kpa * 1e3, share })
         }
-        _ => Err("expected held, sticks, follows, relaxes with seconds after a colon (relaxes:3), or a pressure in kPa, \
+        _ => Err(
+            "expected held, sticks, follows, relaxes with seconds after a colon (relaxes:3), or a pressure in kPa, \
                   with a share up to 1 after a colon (40:0.6)"
-            .to_owned()),
+                .to_owned(),
+        ),
     }
 }
 

@@ -265,12 +265,7 @@ fn from_marks(marks: &[i8], carried: Bounds) -> Vec<State> {
 /// Friction at a standstill along `time_s` and the smooth `pressure`. Where it slides it is a stop that gives way from one sign to the
 /// other, and what it was before the standstill need not be known: once the pressure has moved far enough, it is. Where it sticks, the less
 /// the pressure is the more of what that would give it is left; where it relaxes, less and less is left of what it was `before`.
-pub(super) fn rest(
-    (time_s, pressure): (&[f64], &[f64]),
-    standstill: Standstill,
-    before: Bounds,
-    states: &mut [State],
-) {
+pub(super) fn rest((time_s, pressure): (&[f64], &[f64]), standstill: Standstill, before: Bounds, states: &mut [State]) {
     let mut bounds = before;
     let mut last_pa = pressure[0];
     for (state, (&now_s, &pressure_pa)) in states.iter_mut().zip(time_s.iter().zip(pressure)) {
