@@ -254,22 +254,22 @@ fn standstill(text: &str) -> Result<Standstill, String> {
         "follows" => return Ok(Standstill::AT_ONCE),
         _ => {}
     }
+    // A positive number and, after a colon, a share.
+    let with_share = |text: &str, unless_said: &str| -> Option<(f64, f64)> {
+        let (number, share) = text.split_once(':').unwrap_or((text, unless_said));
+        let number = number.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite())?;
+        Some((number, share.parse().ok()?))
+    };
     if let Some(text) = text.strip_prefix("relaxes:") {
-        let (time_constant_s, to) = text.split_once(':').unwrap_or((text, "0"));
-        return match (time_constant_s.parse::<f64>(), to.parse::<f64>()) {
-            (Ok(time_constant_s), Ok(to))
-                if time_constant_s > 0.0 && time_constant_s.is_finite() && (0.0..1.0).contains(&to) =>
-            {
-                Ok(Standstill::Relaxes { time_constant_s, to })
-            }
+        return match with_share(text, "0") {
+            Some((time_constant_s, to)) if (0.0..1.0).contains(&to) => Ok(Standstill::Relaxes { time_constant_s, to }),
             _ => Err("expected seconds after relaxes:, with the share that stays, less than 1, after a colon \
                       (relaxes:3:0.5)"
                 .to_owned()),
         };
     }
-    let (over_kpa, share) = text.split_once(':').unwrap_or((text, "1"));
-    match (over_kpa.parse::<f64>(), share.parse::<f64>()) {
-        (Ok(over_kpa), Ok(share)) if over_kpa > 0.0 && over_kpa.is_finite() && share > 0.0 && share <= 1.0 => {
+    match with_share(text, "1") {
+        Some((over_kpa, share)) if share > 0.0 && share <= 1.0 => {
             Ok(Standstill::Slides { over_pa: over_kpa * 1e3, share })
         }
         _ => Err(

@@ -213,6 +213,22 @@ fn friction_that_slides_by_more_than_all_of_it_or_partly_at_once_is_refused() {
 }
 
 #[test]
+fn friction_that_relaxes_at_once_or_not_at_all_is_refused() {
+    for (time_constant_s, to, is_right) in [
+        (3.0, 0.0, true),
+        (3.0, 0.5, true),
+        (0.0, 0.5, false),
+        (f64::NAN, 0.5, false),
+        (3.0, 1.0, false),
+        (3.0, -0.1, false),
+    ] {
+        let mut relaxed = artifact(vec![]);
+        relaxed.direction.standstill = Standstill::Relaxes { time_constant_s, to };
+        assert_eq!(relaxed.check().is_ok(), is_right, "{time_constant_s} s, {to}");
+    }
+}
+
+#[test]
 fn events_may_come_again() {
     let step = |instant_s| {
         let values = [("recording", 0.0, "1"), ("instant_s", instant_s, "s"), ("step_n", 2.0, "N")];
