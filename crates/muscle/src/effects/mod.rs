@@ -155,7 +155,7 @@ pub trait Effect: Sync {
         false
     }
 
-    /// Value of parameter `index`, the shapes and behind them the amplitudes, where an artifact does not state it: the effect had that
+    /// Value of parameter `index`, the shapes, behind them the amplitudes and what it keeps, where an artifact does not state it: the effect had that
     /// value before it had the parameter.
     fn unless_stated(&self, _index: usize) -> Option<f64> {
         None

@@ -1,13 +1,20 @@
 //! Mullins softening: rubber is softer below the largest stretch that it has seen.
 //!
 //! ```text
-//! F = F_base - d f [1 - exp(-(ε_m - ε) / ε_c)] - e f [1 - exp(-s / s_c)]
-//! ε_m = max ε so far,   s = ∫ |dε|,   f = V_r dW/dL of latex
+//! F = F_base - d f [1 - exp(-(ε_m - ε) / ε_c)] - e f [1 - exp(-s / s_c)] - a T [1 - exp(-(ε - ε_l) / ε_c)]
+//! ε_m = max ε so far,   ε_l = min ε so far,   s = ∫ |dε|,   f = V_r dW/dL of latex
+//! T = E V_r / L₀ max(ε_s - ε, 0),   E = 6 (C₁₀ + C₀₁) of latex,   ε_s = 1 - 1 / (√3 cos α₀)
 //! ```
+//!
+//! Hoops of the bladder are stretched by contraction. Its axis is where it was mounted under tension, and that is most where the
+//! muscle is longest: a bladder that is slack where an ideal braid pulls no more has the tension `T`. What it has lost of that is
+//! missing below the greatest length so far.
 
 use crate::coordinate::Coordinate;
 use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
+use crate::effects::moment::LATEX_PA;
 use crate::effects::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
+use crate::force::bladder::Bladder;
 use crate::geometry::Muscle;
 
 /// The effect.
@@ -42,7 +49,17 @@ impl Effect for MullinsSoftening {
         &[
             Amplitude { name: "softening", symbol: "d", unit: "1", range: (0.0, 1.5) },
             Amplitude { name: "settling", symbol: "e", unit: "1", range: (0.0, 1.5) },
+            Amplitude { name: "axial_softening", symbol: "a", unit: "1", range: (0.0, MOST_AXIAL) },
         ]
+    }
+
+    /// Before it had an axis, nothing was lost along it and nobody knew of the greatest length.
+    fn unless_stated(&self, index: usize) -> Option<f64> {
+        match index {
+            4 => Some(0.0),
+            7 => Some(NEVER),
+            _ => None,
+        }
     }
 
     /// Rubber that settles within its first stroke was stretched for the first time; a softening in proportion to the distance from
@@ -59,20 +76,37 @@ impl Effect for MullinsSoftening {
         &[
             Kept { name: "past_contraction", unit: "1", range: (NEVER, 0.6), fresh: NEVER },
             Kept { name: "past_travel", unit: "1", range: (0.0, 1e9), fresh: 0.0 },
+            Kept { name: "past_extension", unit: "1", range: (NEVER, 1.0), fresh: NEVER },
         ]
     }
 
-    fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
+    fn start(&self, muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
         let &[softening_contraction, settling_travel] = shape else { unreachable!("two shape parameters") };
-        Box::new(State { softening_contraction, settling_travel, largest: NEVER, follower: 0.0, travelled: 0.0 })
+        let section_m2 = Bladder::new(muscle).rubber_volume_m3() / muscle.rest_length_m;
+        Box::new(State {
+            softening_contraction,
+            settling_travel,
+            stiffness_n: 6.0 * LATEX_PA * section_m2,
+            slack_contraction: muscle.max_contraction_ratio(),
+            largest: NEVER,
+            longest: NEVER,
+            follower: 0.0,
+            travelled: 0.0,
+        })
     }
 }
 
 struct State {
     softening_contraction: f64,
     settling_travel: f64,
+    /// `E V_r / L₀`.
+    stiffness_n: f64,
+    /// `ε_s`.
+    slack_contraction: f64,
     /// Largest contraction so far; gaps do not heal the rubber.
     largest: f64,
+    /// Largest extension so far, `-ε_l`.
+    longest: f64,
     /// Contraction behind that of the muscle by up to half the play, and the travel of it; that in gaps is left out.
     follower: f64,
     travelled: f64,
@@ -82,25 +116,30 @@ struct State {
 const IN_PROPORTION: f64 = 0.3;
 /// Travel of the contraction ratio that is less than a stroke.
 const SETTLES_AT_ONCE: f64 = 0.02;
-/// Largest contraction of rubber that nothing was done to: no muscle is twice as long as at rest.
+/// Largest contraction and extension of rubber that nothing was done to: no muscle is twice as long as at rest, and none contracts to
+/// nothing.
 const NEVER: f64 = -1.0;
+/// Loss of tension, at most, in units of `T`: a bladder three times as stiff as latex, mounted at twice that tension, that loses all of it.
+const MOST_AXIAL: f64 = 6.0;
 /// Half the play in the count of travel, in contraction; noise at rest stays inside it.
 const HALF_PLAY: f64 = 5e-4;
 
 impl Memory for State {
     fn past(&self) -> Vec<f64> {
-        vec![self.largest, self.travelled]
+        vec![self.largest, self.travelled, self.longest]
     }
 
     fn go_on(&mut self, past: &[f64]) {
-        if let &[largest, travelled] = past {
-            (self.largest, self.travelled) = (largest, travelled);
+        if let &[largest, travelled, longest] = past {
+            (self.largest, self.travelled, self.longest) = (largest, travelled, longest);
         }
     }
 
     fn pulls(&mut self, now: &Moment, base: &Base, columns: &mut [f64]) {
-        self.largest = self.largest.max(now.contraction_ratio);
-        let below = (self.largest - now.contraction_ratio) / self.softening_contraction;
+        let contraction = now.contraction_ratio;
+        self.largest = self.largest.max(contraction);
+        self.longest = self.longest.max(-contraction);
+        let [below, within] = [self.largest - contraction, self.longest + contraction].map(|far| far / self.softening_contraction);
         if now.step_s == 0.0 {
             self.follower = now.contraction_ratio;
         } else {
@@ -110,6 +149,7 @@ impl Memory for State {
         }
         columns[0] = base.latex_n() * (-below).exp_m1();
         columns[1] = base.latex_n() * (-self.travelled / self.settling_travel).exp_m1();
+        columns[2] = self.stiffness_n * (self.slack_contraction - contraction).max(0.0) * (-within).exp_m1();
     }
 }
 
@@ -122,8 +162,8 @@ static PAGE: Page = Page {
     summary: "Rubber is softer where it has been stretched further before, and settles over its first cycles. The first \
               inflation to a new contraction meets the full resistance of the bladder, and every later cycle below it \
               meets less.",
-    equation: "F = F_base - d f (1 - exp(-(ε_m - ε) / ε_c)) - e f (1 - exp(-s / s_c)),  ε_m = largest contraction so far, \
-               s = ∫ |dε|",
+    equation: "F = F_base - d f (1 - exp(-(ε_m - ε) / ε_c)) - e f (1 - exp(-s / s_c)) - a T (1 - exp(-(ε - ε_l) / ε_c)),  \
+               ε_m = largest contraction so far, ε_l = smallest, s = ∫ |dε|, T = E V_r / L₀ (ε_s - ε)",
     symbols: &[
         Symbol {
             symbol: "d",
@@ -134,7 +174,7 @@ static PAGE: Page = Page {
         Symbol {
             symbol: "ε_c",
             unit: "1",
-            meaning: "contraction below the largest at which 63 % are there; 0.01 to 0.1",
+            meaning: "contraction below the largest, or above the smallest, at which 63 % are there; 0.01 to 0.1",
         },
         Symbol {
             symbol: "f",
@@ -149,12 +189,24 @@ static PAGE: Page = Page {
             meaning: "travel of the contraction ratio in which 63 % of that are there: a few cycles, 0.2 to 3",
         },
         Symbol { symbol: "s", unit: "1", meaning: "that travel so far, counted outside a play of 0.001" },
+        Symbol {
+            symbol: "a",
+            unit: "1",
+            meaning: "softening along the axis, in units of T; zero where the bladder was mounted without tension",
+        },
+        Symbol { symbol: "ε_l", unit: "1", meaning: "smallest contraction so far: where the muscle was longest" },
+        Symbol {
+            symbol: "T",
+            unit: "N",
+            meaning: "tension of a bladder of latex that is slack at the contraction ε_s, where an ideal braid pulls no more; \
+                      E = 6 (C₁₀ + C₀₁), V_r is the volume of the rubber",
+        },
     ],
     validity: "Rubber that is fresh or rested for a day when the first recording begins, and softened by one recording for \
                the next, or fresh in every one: whichever the recordings show. No recovery within hours.",
     source: "Mullins (1948); Ogden and Roxburgh (1999), Proc. Royal Society A 455, simplified to one exponential over the \
              contraction; Diani, Fayolle and Gilormini (2009), European Polymer Journal 45, for the first cycles",
-    signature: "The first cycle to each new contraction differs from the second at the same pressure and length, the \
+    signature: "The first cycle to each new contraction, or to each new length of a bladder that was mounted under tension, differs from the second at the same pressure and length, the \
                 later ones agree; the difference has the shape of the bladder's force and ignores the pressure.",
     confused_with: &[
         Confusion {
@@ -176,7 +228,7 @@ static PAGE: Page = Page {
     test: "a staircase of largest contractions of 5, 10, 15 and 20 %, three cycles each; the staircase again; rest; again",
     protocol: "run-in",
     coordinate: Coordinate::Cycle,
-    typical: Typical { shapes: &[&[0.03, 0.5]], amplitudes: &[0.06, 0.06] },
+    typical: Typical { shapes: &[&[0.03, 0.5]], amplitudes: &[0.06, 0.06, 0.0] },
     regions: &[],
     drivers: &["contraction"],
 };

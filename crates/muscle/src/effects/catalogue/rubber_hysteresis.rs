@@ -24,7 +24,7 @@ impl Effect for RubberHysteresis {
             name: "slip_distance_m",
             symbol: "δ",
             unit: "m",
-            range: (1e-4, 3e-2),
+            range: (4e-4, 3e-2),
             grid: &[5e-4, 1e-3, 2e-3, 5e-3, 1e-2],
         }]
     }

@@ -1,7 +1,7 @@
 //! Thermal softening: friction warms the bladder, and warm rubber is softer.
 //!
 //! ```text
-//! F = F_base - d f T - e f θ,   τ dT/dt = P / P_ref - T,   P = p π D L |v|,   f = V_r dW/dL of latex
+//! F = F_base - d f T - e f θ - g F_gas θ,   τ dT/dt = P / P_ref - T,   P = p π D L |v|,   f = V_r dW/dL of latex
 //! ```
 
 use crate::coordinate::Coordinate;
@@ -18,6 +18,9 @@ const MOST: f64 = 40.0;
 
 /// Softening per kelvin of a logged temperature, at most: 0.8 % of a bladder three times as stiff as latex.
 const MOST_PER_K: f64 = 0.025;
+
+/// Share of the gas force that a kelvin of a logged temperature takes, at most: a hundred times what it does to a good load cell.
+const MOST_OF_GAS_PER_K: f64 = 0.02;
 
 /// The effect.
 #[derive(Debug)]
@@ -36,7 +39,18 @@ impl Effect for ThermalSoftening {
         &[
             Amplitude { name: "softening_per_kilowatt", symbol: "d", unit: "1", range: (-MOST, MOST) },
             Amplitude { name: "softening_per_kelvin", symbol: "e", unit: "1/K", range: (-MOST_PER_K, MOST_PER_K) },
+            Amplitude {
+                name: "gas_force_loss_per_kelvin",
+                symbol: "g",
+                unit: "1/K",
+                range: (-MOST_OF_GAS_PER_K, MOST_OF_GAS_PER_K),
+            },
         ]
+    }
+
+    /// Before the gas force could follow the temperature, it did not.
+    fn unless_stated(&self, index: usize) -> Option<f64> {
+        (index == 3).then_some(0.0)
     }
 
     fn outlasts(&self) -> bool {
@@ -70,6 +84,7 @@ impl Memory for State {
         self.last_s = Some(now.time_s);
         columns[0] = -base.latex_n() * self.warmth;
         columns[1] = -base.latex_n() * now.warmth_k;
+        columns[2] = -base.gas_n * now.warmth_k;
     }
 }
 
@@ -80,8 +95,9 @@ static PAGE: Page = Page {
     dependence: Dependence::Past,
     name: "thermal softening of the bladder",
     summary: "Friction and hysteresis warm a muscle that works, over minutes, and its bladder resists less. Rest cools \
-              it down again. Where a temperature was logged, the bladder follows that as well.",
-    equation: "F = F_base - d f T - e f θ,  τ dT/dt = P / P_ref - T,  P = p π D L |v|,  P_ref = 1 kW",
+              it down again. Where a temperature was logged, the bladder follows that as well, and with it what of the force of \
+              the gas does.",
+    equation: "F = F_base - d f T - e f θ - g F_gas θ,  τ dT/dt = P / P_ref - T,  P = p π D L |v|,  P_ref = 1 kW",
     symbols: &[
         Symbol {
             symbol: "d",
@@ -107,6 +123,13 @@ static PAGE: Page = Page {
             meaning: "softening per kelvin of the logged temperature, in units of f; 0.002 to 0.008, below zero for rubber \
                       that stiffens; zero where none was logged",
         },
+        Symbol {
+            symbol: "g",
+            unit: "1/K",
+            meaning: "share of the gas force that a kelvin of the logged temperature takes, either sign: 0.0002 where the load \
+                      cell or the gauge follows it, more where the braid does; zero where none was logged",
+        },
+        Symbol { symbol: "F_gas", unit: "N", meaning: "force of the gas in eq. 11" },
         Symbol { symbol: "θ", unit: "K", meaning: "logged temperature above 20 °C" },
     ],
     validity: "A recording that begins cold, in surroundings of constant temperature or with a logged one; some kelvin, where the rubber \
@@ -136,7 +159,7 @@ static PAGE: Page = Page {
            logged",
     protocol: "endurance",
     coordinate: Coordinate::Time,
-    typical: Typical { shapes: &[&[400.0]], amplitudes: &[0.1, 0.0] },
+    typical: Typical { shapes: &[&[400.0]], amplitudes: &[0.1, 0.0, 0.0] },
     regions: &[],
     drivers: &["time", "cycle"],
 };
@@ -150,6 +173,16 @@ mod tests {
     /// One kilowatt of `p π D L |v|`.
     fn working(time_s: f64) -> Moment {
         Moment { time_s, step_s: 1.0, speed_m_per_s: -REFERENCE_W / base().normal_n, ..still() }
+    }
+
+    #[test]
+    fn a_logged_temperature_acts_on_the_bladder_and_on_the_gas_at_once() {
+        let mut memory = ThermalSoftening.start(&nominal(), &[60.0]);
+        let base = base();
+        let [_, bladder_n, gas_n] = pull(&mut *memory, &Moment { warmth_k: 5.0, ..still() }, &base);
+        assert!((bladder_n + 5.0 * base.latex_n()).abs() < 1e-9 && bladder_n > 0.0);
+        assert!((gas_n + 5.0 * base.gas_n).abs() < 1e-9 && gas_n < 0.0);
+        assert_eq!(pull(&mut *memory, &still(), &base)[1..], [0.0, 0.0]);
     }
 
     #[test]
