@@ -5,7 +5,7 @@
 //! twelve were not. A load cell that is tared before each recording says nothing of the muscle.
 
 use pam_identification::error::IdentifyError;
-use pam_identification::evaluate::{Evaluation, noise_floor_n};
+use pam_identification::evaluate::noise_floor_n;
 use pam_identification::prepare::Prepared;
 use pam_identification::trace::Trace;
 use pam_muscle::force::ForceModel;
@@ -26,7 +26,7 @@ const ALL_WITHIN: f64 = 2.5;
 /// Share of the largest force by which the tare of a load cell may differ from recording to recording: half a percent of its range. Of
 /// twenty healthy muscles of a stranger's bench, fourteen of which have a tare of their own in each recording, of up to 0.5 % of the range
 /// and six times the noise, six were not `consistent` for that alone.
-const TARE_SHARE: f64 = 0.005;
+const TARE_SHARE: f64 = 0.01;
 
 /// What a model typically leaves, in N.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,13 +88,12 @@ impl Typical {
         self.fitted_n > most_n(self.sensors_n.0, matters_n)
     }
 
-    /// Whether neither the `fitted` recordings nor the `held` ones are followed, stretches that are missed by far included. Of a muscle
-    /// that lacks nothing one of them is: turns at which the direction is in doubt, or a tare of what was held out, spoil one alone.
-    pub(crate) fn neither_is_followed(&self, fitted: &Evaluation, held: &Evaluation) -> bool {
-        let is_missed = |of: &Evaluation, sensors_n: f64| {
-            of.together.is_some_and(|left| {
-                left.rmse_n > FOLLOWED_WITHIN * sensors_n && left.rmse_all_n > ALL_WITHIN * sensors_n
-            })
+    /// Whether neither the `fitted` recordings nor the `held` ones are followed, stretches that are missed by far included, a tare of each
+    /// beside. Of a muscle that lacks nothing one of them is: turns at which the direction is in doubt spoil one alone.
+    pub(crate) fn neither_is_followed(&self, fitted: &[Trace], held: &[Trace]) -> bool {
+        let is_missed = |of: &[Trace], sensors_n: f64| {
+            let [counted_n, all_n] = [true, false].map(|counted| rmse_beside_tares_n(of, counted));
+            counted_n > FOLLOWED_WITHIN * sensors_n && all_n > ALL_WITHIN * sensors_n
         };
         is_missed(fitted, self.sensors_n.0) && is_missed(held, self.sensors_n.1)
     }
@@ -117,6 +116,20 @@ fn left_beside_tares_n(traces: &[Trace]) -> f64 {
         counted_n(trace).map(move |left_n| left_n - tare_n)
     });
     turns::typical_n(left).unwrap_or(0.0)
+}
+
+/// Root mean square of what models leave of `traces` beside a tare of each, in N: of the samples that count or of all.
+fn rmse_beside_tares_n(traces: &[Trace], counted: bool) -> f64 {
+    let (mut square, mut n) = (0.0, 0_usize);
+    for trace in traces {
+        let tare_n = tare_n(trace);
+        let left_n = trace.force_n.iter().zip(&trace.model_n).map(|(force_n, model_n)| force_n - model_n - tare_n);
+        for (left_n, _) in left_n.zip(&trace.settled).filter(|(_, settled)| !counted || **settled) {
+            square += left_n * left_n;
+            n += 1;
+        }
+    }
+    (square / n.max(1) as f64).sqrt()
 }
 
 /// What the model of `trace` leaves of each of its counted samples, in N.
