@@ -118,6 +118,10 @@ def families(muscle, theta, recordings):
             for scale in (0.01, 0.03):
                 softer = rubber * -np.expm1(-(most - contraction) / scale)
                 add("softening", {"mullins-softening"}, (memory, scale), softer)
+        shortest = np.minimum.accumulate(contraction)
+        for scale in (0.01, 0.03):
+            slackens = -np.expm1(-(contraction - shortest) / scale)
+            add("softening", {"mullins-softening"}, ("axis", scale), (reach - contraction) * slackens)
         furthest = ever[-1]
         work = np.maximum(pressure, 0) * diameter * length * np.abs(speed)
         for tau in (20, 100, 300):

@@ -49,6 +49,7 @@ class Eq11:
         strand_diameter_m = np.float64(geometry["strand_diameter_m"])
         strand_m = self.rest_length_m / np.cos(angle_rad)
         turns = strand_m * np.sin(angle_rad) / (2.0 * np.pi * self.rest_radius_m)
+        self.max_contraction_ratio = 1.0 - 1.0 / (np.sqrt(3.0) * np.cos(angle_rad))
         section_m2 = strands * np.pi * strand_diameter_m * strand_diameter_m / 4.0
         self.strand_square_m2 = strand_m**2
         self.per_pi_turns = 1.0 / (np.pi * turns)
@@ -508,10 +509,14 @@ class MullinsSoftening:
     def __init__(self, values, eq11):
         self.values, self.follower = values, 0.0
         self.largest, self.travelled = values.get("past_contraction", -1.0), values.get("past_travel", 0.0)
+        self.longest = values.get("past_extension", -1.0)
+        # 6 (C10 + C01) of latex on the section of the bladder, and where an ideal braid pulls no more.
+        self.stiffness_n = 6.0 * 2.2e5 * eq11.rubber_m3 / eq11.rest_length_m
+        self.slack_contraction = eq11.max_contraction_ratio
 
     def pulls(self, now, base):
         here = now.contraction_ratio
-        self.largest = max(self.largest, here)
+        self.largest, self.longest = max(self.largest, here), max(self.longest, -here)
         if now.step_s == 0.0:
             self.follower = here
         else:
@@ -521,25 +526,33 @@ class MullinsSoftening:
         below = (self.largest - here) / self.values["softening_contraction"]
         settled = self.travelled / self.values["settling_travel"]
         softer = math.expm1(-below) * self.values["softening"] + math.expm1(-settled) * self.values["settling"]
-        return base.latex_n * softer
+        within = (self.longest + here) / self.values["softening_contraction"]
+        tension_n = self.stiffness_n * max(self.slack_contraction - here, 0.0)
+        return base.latex_n * softer + tension_n * math.expm1(-within) * self.values.get("axial_softening", 0.0)
 
 
 class ThermalSoftening:
     REFERENCE_W = 1e3
 
     def __init__(self, values, eq11):
-        self.values, self.warmth, self.last = values, 0.0, None
+        self.values, self.warmth, self.wall_k, self.last = values, 0.0, 0.0, None
+        self.wall_lag_s = values.get("wall_lag_s", 0.0)
 
     def pulls(self, now, base):
         power = max(base.normal_n, 0.0) * abs(now.speed_m_per_s) / self.REFERENCE_W
         if self.last is not None:
             last_s, last_power = self.last
             heating = 0.5 * (power + last_power) if now.step_s > 0.0 else 0.0
-            share = math.expm1(-max(now.time_s - last_s, 0.0) / self.values["time_constant_s"])
-            self.warmth += (self.warmth - heating) * share
+            step_s = max(now.time_s - last_s, 0.0)
+            self.warmth += (self.warmth - heating) * math.expm1(-step_s / self.values["time_constant_s"])
+            behind = math.exp(-step_s / self.wall_lag_s) if self.wall_lag_s > 0.0 else 0.0
+            self.wall_k = now.warmth_k + (self.wall_k - now.warmth_k) * behind
+        else:
+            self.wall_k = now.warmth_k
         self.last = (now.time_s, power)
-        softer = self.warmth * self.values["softening_per_kilowatt"] + now.warmth_k * self.values["softening_per_kelvin"]
-        return -base.latex_n * softer
+        softer = self.warmth * self.values["softening_per_kilowatt"] + self.wall_k * self.values["softening_per_kelvin"]
+        weaker = self.wall_k * self.values.get("gas_force_loss_per_kelvin", 0.0)
+        return -base.latex_n * softer - base.gas_n * weaker
 
 
 class FatigueWear:

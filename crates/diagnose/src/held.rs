@@ -26,7 +26,7 @@ pub(crate) const FAR: f64 = 10.0;
 /// Times the worst error with which one of the fitted recordings is foretold by the others: so much is foretold of any recording.
 const AS_OTHERS: f64 = 2.0;
 
-/// Tares of a load cell that a recording may be off by: what was fitted has one as well.
+/// Tares of a zeroed load cell that a recording may be off by: what was fitted has one as well.
 const TARES: f64 = 2.0;
 
 /// Share of a held-out recording within what was fitted from which on it is judged, there alone.
@@ -84,7 +84,7 @@ pub(crate) fn judge(diagnosis: &Diagnosis, agreement: &Agreement) -> Result<Held
             continue;
         }
         // A wrong unit or zero takes a recording elsewhere, too.
-        let most_n = TARES * typical::most_tare_n(&trace);
+        let most_n = typical::most_tare_n(&trace, TARES);
         let readings = reading::explain(&[trace], model.base(), own_n);
         if let Some(tare) = readings.iter().find(|reading| is_tare(reading, most_n)) {
             let words = tare.words();

@@ -267,6 +267,7 @@ fn wider(left: Seen, right: Seen) -> Seen {
         contraction_ratio: both(left.contraction_ratio, right.contraction_ratio),
         pressure_pa: both(left.pressure_pa, right.pressure_pa),
         force_n: both(left.force_n, right.force_n),
+        warmth_k: both(left.warmth_k, right.warmth_k),
         duration_s: left.duration_s.max(right.duration_s),
     }
 }

@@ -51,6 +51,7 @@ pub(super) fn of_eq11(model: &ForceModel) -> Vec<(String, f64)> {
     let named = [
         ("PI", PI),
         ("REST_LENGTH_M", muscle.rest_length_m),
+        ("MAX_CONTRACTION_RATIO", muscle.max_contraction_ratio()),
         ("REST_DIAMETER_M", 2.0 * muscle.rest_radius_m),
         ("AREA_M2", PI * muscle.rest_radius_m * muscle.rest_radius_m),
         ("GAS_A", 3.0 / muscle.braid_angle_rad.tan().powi(2)),

@@ -84,6 +84,8 @@ pub struct Seen {
     pub pressure_pa: (f64, f64),
     /// Lowest and highest force, in N.
     pub force_n: (f64, f64),
+    /// Lowest and highest logged temperature above 20 °C, in K; both zero where none was logged.
+    pub warmth_k: (f64, f64),
     /// Longest recording, in s.
     pub duration_s: f64,
 }

@@ -19,7 +19,7 @@ impl Effect for ForceDrift {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "warm_up_s", symbol: "τ", unit: "s", range: (5.0, 4e3), grid: &[8.0, 30.0, 120.0, 400.0] }]
+        &[Shape { name: "warm_up_s", symbol: "τ", unit: "s", range: (20.0, 4e3), grid: &[30.0, 120.0, 400.0] }]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {

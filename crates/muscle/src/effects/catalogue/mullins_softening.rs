@@ -11,8 +11,8 @@
 //! missing below the greatest length so far.
 
 use crate::coordinate::Coordinate;
-use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::moment::LATEX_PA;
+use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
 use crate::effects::{Amplitude, Base, Effect, Kept, Kind, Memory, Moment, Role, Shape};
 use crate::force::bladder::Bladder;
 use crate::geometry::Muscle;
@@ -139,7 +139,8 @@ impl Memory for State {
         let contraction = now.contraction_ratio;
         self.largest = self.largest.max(contraction);
         self.longest = self.longest.max(-contraction);
-        let [below, within] = [self.largest - contraction, self.longest + contraction].map(|far| far / self.softening_contraction);
+        let [below, within] =
+            [self.largest - contraction, self.longest + contraction].map(|far| far / self.softening_contraction);
         if now.step_s == 0.0 {
             self.follower = now.contraction_ratio;
         } else {
@@ -251,6 +252,23 @@ mod tests {
         assert!(back_n > 0.0 && at(-10.0) <= -base().latex_n());
         // Up again along the softened curve, and out onto the virgin one.
         assert!((at(0.07) - back_n).abs() < 1e-12 && at(0.12).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_bladder_under_tension_has_less_of_it_below_the_greatest_length_so_far() {
+        let muscle = nominal();
+        let mut memory = MullinsSoftening.start(&muscle, &[0.03, 0.5]);
+        let mut at =
+            |contraction_ratio| pull(&mut *memory, &Moment { step_s: 0.1, contraction_ratio, ..still() }, &base())[2];
+        // Longer and longer on the virgin curve.
+        assert!(at(0.1).abs() < 1e-12 && at(0.02).abs() < 1e-12);
+        let back_n = at(0.05);
+        let section_m2 = Bladder::new(&muscle).rubber_volume_m3() / muscle.rest_length_m;
+        let tension_n = 6.0 * LATEX_PA * section_m2 * (muscle.max_contraction_ratio() - 0.05);
+        assert!(tension_n > 10.0 && (back_n + tension_n * (1.0 - (-1.0_f64).exp())).abs() < 1e-9, "{back_n}");
+        // Nothing where it is slack, and nothing at the greatest length again.
+        assert_eq!(at(muscle.max_contraction_ratio() + 0.01), 0.0);
+        assert!(at(0.02).abs() < 1e-12);
     }
 
     #[test]

@@ -24,7 +24,7 @@ impl Effect for RubberHysteresis {
             name: "slip_distance_m",
             symbol: "δ",
             unit: "m",
-            range: (4e-4, 3e-2),
+            range: (DRY_M, 3e-2),
             grid: &[5e-4, 1e-3, 2e-3, 5e-3, 1e-2],
         }]
     }
@@ -37,6 +37,11 @@ impl Effect for RubberHysteresis {
         Box::new(State { rest_length_m: muscle.rest_length_m, follower: Follower::new(shape[0]) })
     }
 }
+
+/// Slip distance below which a loop is that of dry friction: strands turn over within some tenths of a millimetre, rubber is strained by
+/// more. Of 27 looked-at names that had a shape all six with less were wrong, two of them in healthy muscles whose friction has a part
+/// that no pressure makes, and of the 21 with more all but one right.
+const DRY_M: f64 = 4e-4;
 
 struct State {
     rest_length_m: f64,

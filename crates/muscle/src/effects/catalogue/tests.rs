@@ -27,7 +27,13 @@ const PROTOCOLS: [&str; 14] = [
 ];
 
 fn seen() -> Seen {
-    Seen { contraction_ratio: (0.0, 0.25), pressure_pa: (0.0, 5e5), force_n: (-0.5, 800.0), duration_s: 120.0 }
+    Seen {
+        contraction_ratio: (0.0, 0.25),
+        pressure_pa: (0.0, 5e5),
+        force_n: (-0.5, 800.0),
+        warmth_k: (0.0, 0.0),
+        duration_s: 120.0,
+    }
 }
 
 /// Every shape that a fit begins with, and the first and last of the grids.

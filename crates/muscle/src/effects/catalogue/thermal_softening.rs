@@ -1,12 +1,13 @@
 //! Thermal softening: friction warms the bladder, and warm rubber is softer.
 //!
 //! ```text
-//! F = F_base - d f T - e f θ - g F_gas θ,   τ dT/dt = P / P_ref - T,   P = p π D L |v|,   f = V_r dW/dL of latex
+//! F = F_base - d f T - (e f + g F_gas) Θ,   τ dT/dt = P / P_ref - T,   τ_w dΘ/dt = θ - Θ
+//! P = p π D L |v|,   f = V_r dW/dL of latex
 //! ```
 
 use crate::coordinate::Coordinate;
 use crate::effects::page::{Confusion, Dependence, Page, Symbol, Typical};
-use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Shape};
+use crate::effects::{Amplitude, Base, Effect, Kind, Memory, Moment, Role, Seen, Shape};
 use crate::geometry::Muscle;
 
 /// `P_ref`, in W per unit of `f'`: 1 W of friction where `f'` is 1e-3.
@@ -22,6 +23,9 @@ const MOST_PER_K: f64 = 0.025;
 /// Share of the gas force that a kelvin of a logged temperature takes, at most: a hundred times what it does to a good load cell.
 const MOST_OF_GAS_PER_K: f64 = 0.02;
 
+/// Lag of a wall that is as warm as the thermometer says.
+const AT_ONCE: f64 = 0.0;
+
 /// The effect.
 #[derive(Debug)]
 pub(super) struct ThermalSoftening;
@@ -32,7 +36,10 @@ impl Effect for ThermalSoftening {
     }
 
     fn shape(&self) -> &'static [Shape] {
-        &[Shape { name: "time_constant_s", symbol: "τ", unit: "s", range: (20.0, 3e3), grid: &[60.0, 200.0, 600.0] }]
+        &[
+            Shape { name: "time_constant_s", symbol: "τ", unit: "s", range: (20.0, 3e3), grid: &[60.0, 200.0, 600.0] },
+            Shape { name: "wall_lag_s", symbol: "τ_w", unit: "s", range: (AT_ONCE, 60.0), grid: &[AT_ONCE, 5.0] },
+        ]
     }
 
     fn amplitudes(&self) -> &'static [Amplitude] {
@@ -48,9 +55,24 @@ impl Effect for ThermalSoftening {
         ]
     }
 
-    /// Before the gas force could follow the temperature, it did not.
+    /// Where none was logged nothing is behind it.
+    fn first_shapes(&self, seen: &Seen) -> Vec<Vec<f64>> {
+        let [time_constants, lags] = [0, 1].map(|index: usize| self.shape()[index].grid);
+        let lags = if seen.warmth_k.1 > seen.warmth_k.0 { lags } else { &lags[..1] };
+        time_constants
+            .iter()
+            .flat_map(|&time_constant_s| lags.iter().map(move |&lag_s| vec![time_constant_s, lag_s]))
+            .collect()
+    }
+
+    /// A thermometer may be as fast as the wall.
+    fn may_end(&self, index: usize, end: f64) -> bool {
+        (index, end) == (1, AT_ONCE)
+    }
+
+    /// Before the wall could be behind the thermometer, and the gas force follow it, neither was.
     fn unless_stated(&self, index: usize) -> Option<f64> {
-        (index == 3).then_some(0.0)
+        [1, 4].contains(&index).then_some(0.0)
     }
 
     fn outlasts(&self) -> bool {
@@ -58,14 +80,18 @@ impl Effect for ThermalSoftening {
     }
 
     fn start(&self, _muscle: &Muscle, shape: &[f64]) -> Box<dyn Memory> {
-        Box::new(State { time_constant_s: shape[0], warmth: 0.0, power: 0.0, last_s: None })
+        let (time_constant_s, wall_lag_s) = (shape[0], shape[1]);
+        Box::new(State { time_constant_s, wall_lag_s, warmth: 0.0, wall_k: 0.0, power: 0.0, last_s: None })
     }
 }
 
 struct State {
     time_constant_s: f64,
+    wall_lag_s: f64,
     /// `T`: temperature above the surroundings, in units of what `P_ref` would end at.
     warmth: f64,
+    /// `Θ`; that of the thermometer as a recording begins.
+    wall_k: f64,
     /// `P / P_ref` a moment ago.
     power: f64,
     last_s: Option<f64>,
@@ -79,12 +105,17 @@ impl Memory for State {
             let heating = if now.step_s > 0.0 { 0.5 * (power + self.power) } else { 0.0 };
             let share = (-(now.time_s - last_s).max(0.0) / self.time_constant_s).exp_m1();
             self.warmth += (self.warmth - heating) * share;
+            let behind =
+                if self.wall_lag_s > 0.0 { (-(now.time_s - last_s).max(0.0) / self.wall_lag_s).exp() } else { 0.0 };
+            self.wall_k = now.warmth_k + (self.wall_k - now.warmth_k) * behind;
+        } else {
+            self.wall_k = now.warmth_k;
         }
         self.power = power;
         self.last_s = Some(now.time_s);
         columns[0] = -base.latex_n() * self.warmth;
-        columns[1] = -base.latex_n() * now.warmth_k;
-        columns[2] = -base.gas_n * now.warmth_k;
+        columns[1] = -base.latex_n() * self.wall_k;
+        columns[2] = -base.gas_n * self.wall_k;
     }
 }
 
@@ -97,7 +128,7 @@ static PAGE: Page = Page {
     summary: "Friction and hysteresis warm a muscle that works, over minutes, and its bladder resists less. Rest cools \
               it down again. Where a temperature was logged, the bladder follows that as well, and with it what of the force of \
               the gas does.",
-    equation: "F = F_base - d f T - e f θ - g F_gas θ,  τ dT/dt = P / P_ref - T,  P = p π D L |v|,  P_ref = 1 kW",
+    equation: "F = F_base - d f T - (e f + g F_gas) Θ,  τ dT/dt = P / P_ref - T,  τ_w dΘ/dt = θ - Θ,  P = p π D L |v|,  P_ref = 1 kW",
     symbols: &[
         Symbol {
             symbol: "d",
@@ -131,6 +162,12 @@ static PAGE: Page = Page {
         },
         Symbol { symbol: "F_gas", unit: "N", meaning: "force of the gas in eq. 11" },
         Symbol { symbol: "θ", unit: "K", meaning: "logged temperature above 20 °C" },
+        Symbol { symbol: "Θ", unit: "K", meaning: "that of the wall, which follows it" },
+        Symbol {
+            symbol: "τ_w",
+            unit: "s",
+            meaning: "time by which the wall is behind the thermometer: none, or some seconds for a few millimetres of rubber",
+        },
     ],
     validity: "A recording that begins cold, in surroundings of constant temperature or with a logged one; some kelvin, where the rubber \
                softens in proportion. Unfilled rubber may stiffen a little instead, which this leaves out.",
@@ -159,7 +196,7 @@ static PAGE: Page = Page {
            logged",
     protocol: "endurance",
     coordinate: Coordinate::Time,
-    typical: Typical { shapes: &[&[400.0]], amplitudes: &[0.1, 0.0, 0.0] },
+    typical: Typical { shapes: &[&[400.0, AT_ONCE]], amplitudes: &[0.1, 0.0, 0.0] },
     regions: &[],
     drivers: &["time", "cycle"],
 };
@@ -177,7 +214,7 @@ mod tests {
 
     #[test]
     fn a_logged_temperature_acts_on_the_bladder_and_on_the_gas_at_once() {
-        let mut memory = ThermalSoftening.start(&nominal(), &[60.0]);
+        let mut memory = ThermalSoftening.start(&nominal(), &[60.0, AT_ONCE]);
         let base = base();
         let [_, bladder_n, gas_n] = pull(&mut *memory, &Moment { warmth_k: 5.0, ..still() }, &base);
         assert!((bladder_n + 5.0 * base.latex_n()).abs() < 1e-9 && bladder_n > 0.0);
@@ -186,8 +223,35 @@ mod tests {
     }
 
     #[test]
+    fn the_wall_is_behind_the_thermometer_from_where_both_began() {
+        let mut memory = ThermalSoftening.start(&nominal(), &[60.0, 4.0]);
+        let mut at = |time_s: f64, warmth_k: f64| {
+            let moment = Moment { time_s, step_s: 1.0, warmth_k, ..still() };
+            pull(&mut *memory, &moment, &base())[1] / -base().latex_n()
+        };
+        assert_eq!(at(0.0, 3.0), 3.0);
+        assert!((at(4.0, 13.0) - (13.0 - 10.0 * (-1.0_f64).exp())).abs() < 1e-12);
+        assert!((at(4e3, 13.0) - 13.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_lag_is_looked_for_where_a_temperature_was_logged() {
+        let seen = Seen {
+            warmth_k: (0.0, 0.0),
+            contraction_ratio: (0.0, 0.2),
+            pressure_pa: (0.0, 5e5),
+            force_n: (0.0, 9e2),
+            duration_s: 60.0,
+        };
+        let lags =
+            |seen: &Seen| -> Vec<f64> { ThermalSoftening.first_shapes(seen).iter().map(|shape| shape[1]).collect() };
+        assert_eq!(lags(&seen), [AT_ONCE; 3]);
+        assert_eq!(lags(&Seen { warmth_k: (1.0, 9.0), ..seen }).iter().filter(|lag| **lag > 0.0).count(), 3);
+    }
+
+    #[test]
     fn lasting_work_ends_at_one_and_rest_cools() {
-        let mut memory = ThermalSoftening.start(&nominal(), &[60.0]);
+        let mut memory = ThermalSoftening.start(&nominal(), &[60.0, AT_ONCE]);
         assert_eq!(pull(&mut *memory, &Moment { step_s: 0.0, ..working(0.0) }, &base())[0], 0.0);
         let mut column_n = 0.0;
         for second in 1..=60 {
