@@ -305,7 +305,7 @@ mod tests {
     #[test]
     fn a_muscle_that_has_worked_begins_warm_and_cools() {
         let given = Given::of(&["isobaric-triangles"], &[]);
-        let guess = given.guess("thermal-softening", &[200.0]);
+        let guess = given.guess("thermal-softening", &[200.0, 0.0]);
         let state = given.setting().fit(Vec::new(), &given.start, &given.model).expect("a fit");
         let columns = given.setting().beginnings(&state, &guess);
         assert_eq!(columns.len(), given.track.recordings.len());

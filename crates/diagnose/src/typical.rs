@@ -163,7 +163,6 @@ mod tests {
     use super::*;
     use crate::given::tests::{STROKES, artifact, diagnosed_knocked, knocked, recorded};
     use pam_artifact::diagnosis::Verdict;
-    use pam_artifact::model::FitStatistics;
     use pam_identification::along::Along;
     use pam_muscle::effects::AugmentedModel;
 
@@ -185,15 +184,20 @@ mod tests {
 
     #[test]
     fn neither_is_followed_where_both_are_missed_in_what_counts_and_over_all_samples() {
-        // Two of three samples count, and neither half of either has a tare.
+        // Two of three samples count, and there is no tare.
         let left = |counted_n: f64, all_n: f64| {
             let other_n = (3.0 * all_n * all_n - 2.0 * counted_n * counted_n).sqrt();
             let left_n = |at: usize| {
-                let sign = if at.is_multiple_of(2) { 1.0 } else { -1.0 };
-                sign * if at % 3 == 0 { other_n } else { counted_n }
+                let swing = [1.5_f64.sqrt(), 0.0, -(1.5_f64.sqrt())][at / 3 % 3];
+                swing * if at.is_multiple_of(3) { other_n } else { counted_n }
             };
-            let (force_n, model_n) = ((0..600).map(left_n).collect(), vec![0.0; 600]);
-            [Trace { force_n, model_n, settled: (0..600).map(|at| at % 3 != 0).collect(), ..Trace::default() }]
+            let (force_n, model_n) = ((0..900).map(left_n).collect(), vec![0.0; 900]);
+            [Trace {
+                force_n,
+                model_n,
+                settled: (0..900).map(|at: usize| !at.is_multiple_of(3)).collect(),
+                ..Trace::default()
+            }]
         };
         // Half a newton of noise in what was fitted, twice that in what was held out.
         let typical = typical(0.9, 1.9);

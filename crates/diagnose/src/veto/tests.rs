@@ -124,7 +124,7 @@ fn what_other_recordings_cannot_show_stands_on_strong_evidence_alone() {
         stands_unseen(&found)
     };
     // Ten blocks of a ninth are 22, of a fifth 16.
-    assert!(stands("force-step", &[0.0, 5.0], 9.0) && stands("thermal-softening", &[300.0], 9.0));
+    assert!(stands("force-step", &[0.0, 5.0], 9.0) && stands("thermal-softening", &[300.0, 0.0], 9.0));
     assert!(!stands("force-step", &[0.0, 5.0], 5.0) && !stands("pressure-lag", &[0.15, 0.0], 9.0));
 }
 
