@@ -207,8 +207,8 @@ static PAGE: Page = Page {
                the next, or fresh in every one: whichever the recordings show. No recovery within hours.",
     source: "Mullins (1948); Ogden and Roxburgh (1999), Proc. Royal Society A 455, simplified to one exponential over the \
              contraction; Diani, Fayolle and Gilormini (2009), European Polymer Journal 45, for the first cycles",
-    signature: "The first cycle to each new contraction, or to each new length of a bladder that was mounted under tension, differs from the second at the same pressure and length, the \
-                later ones agree; the difference has the shape of the bladder's force and ignores the pressure.",
+    signature: "The first cycle to each new contraction, or to each new length where the bladder was mounted under tension, \
+                differs from the second at the same pressure and length, the later ones agree; the difference has the shape of the bladder's force and ignores the pressure.",
     confused_with: &[
         Confusion {
             id: "viscoelastic-relaxation",
