@@ -164,7 +164,7 @@ static PAGE: Page = Page {
               inflation to a new contraction meets the full resistance of the bladder, and every later cycle below it \
               meets less.",
     equation: "F = F_base - d f (1 - exp(-(ε_m - ε) / ε_c)) - e f (1 - exp(-s / s_c)) - a T (1 - exp(-(ε - ε_l) / ε_c)),  \
-               ε_m = largest contraction so far, ε_l = smallest, s = ∫ |dε|, T = E V_r / L₀ (ε_s - ε)",
+               ε_m = largest contraction so far, ε_l = smallest,  s = ∫ |dε|,  T = E V_r / L₀ (ε_s - ε)",
     symbols: &[
         Symbol {
             symbol: "d",
