@@ -37,7 +37,7 @@ use crate::problem::DiagnosisProblem;
 use crate::rig;
 use crate::search::{Limits, ends};
 use crate::standing::{Standing, unexplained};
-use crate::typical::Typical;
+use crate::typical::{Tares, Typical};
 use crate::uncertainty::{Uncertainty, correlated_instants};
 use crate::verdict::Sizes;
 use crate::written::{Fit, Written};
@@ -102,6 +102,8 @@ pub struct Diagnosis {
     pub sizes: Sizes,
     /// Whether, where nothing is named, what is written typically leaves more of what was fitted or held out than noise accounts for.
     pub typically_misses: bool,
+    /// Tares in what was fitted.
+    pub(crate) tares: Tares,
     /// Where what was fitted is followed and what was held out is not: what one model of both leaves, if that follows all.
     pub pooled: Option<Pooled>,
     /// Names that are none, by id, each with the force without a name that explains more.
@@ -352,6 +354,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         next_experiment,
         sizes,
         typically_misses,
+        tares: Tares::of(&fitted_traces),
         pooled,
         nameless: found.nameless.clone(),
         as_well: found.as_well.clone(),

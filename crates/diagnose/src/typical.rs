@@ -93,7 +93,7 @@ impl Typical {
     /// beside. Of a muscle that lacks nothing one of them is: turns at which the direction is in doubt spoil one alone.
     pub(crate) fn neither_is_followed(&self, fitted: &[Trace], held: &[Trace]) -> bool {
         let is_missed = |of: &[Trace], sensors_n: f64| {
-            let [counted_n, all_n] = [true, false].map(|counted| rmse_beside_tares_n(of, counted));
+            let [counted_n, all_n] = [true, false].map(|counted| rmse_n(of, counted, &tare_n));
             counted_n > FOLLOWED_WITHIN * sensors_n && all_n > ALL_WITHIN * sensors_n
         };
         is_missed(fitted, self.sensors_n.0) && is_missed(held, self.sensors_n.1)
@@ -103,6 +103,37 @@ impl Typical {
 /// What may typically be left where the sensors leave `sensors_n`, in N.
 fn most_n(sensors_n: f64, matters_n: Option<f64>) -> f64 {
     matters_n.map_or(FOLLOWED_WITHIN * sensors_n, |limit_n| sensors_n.hypot(limit_n))
+}
+
+/// Tares of a load cell, one in each of some recordings, and what is left beside them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Tares {
+    /// The largest, in N.
+    pub(crate) largest_n: f64,
+    /// Root mean square of what is left of the counted samples, in N.
+    pub(crate) left_n: f64,
+    /// The same beside the tares.
+    pub(crate) beside_n: f64,
+}
+
+impl Tares {
+    /// Of what models leave of `traces`.
+    pub(crate) fn of(traces: &[Trace]) -> Self {
+        let largest_n = traces.iter().map(tare_n).map(f64::abs).fold(0.0, f64::max);
+        let [left_n, beside_n] =
+            [&|_: &Trace| 0.0, &tare_n as &dyn Fn(&Trace) -> f64].map(|tare_n| rmse_n(traces, true, tare_n));
+        Self { largest_n, left_n, beside_n }
+    }
+
+    /// In words, where they are most of what is left.
+    pub(crate) fn words(self) -> Option<String> {
+        (self.beside_n.powi(2) < 0.5 * self.left_n.powi(2)).then(|| {
+            format!(
+                " Most of that is a tare of each recording, of up to {:.2} N: beside it {:.2} N are left.",
+                self.largest_n, self.beside_n
+            )
+        })
+    }
 }
 
 /// What models typically leave of the counted samples of `traces`, in N; nothing where none counts.
@@ -119,8 +150,8 @@ fn left_beside_tares_n(traces: &[Trace]) -> f64 {
     turns::typical_n(left).unwrap_or(0.0)
 }
 
-/// Root mean square of what models leave of `traces` beside a tare of each, in N: of the samples that count or of all.
-fn rmse_beside_tares_n(traces: &[Trace], counted: bool) -> f64 {
+/// Root mean square of what models leave of `traces` beside `tare_n` of each, in N: of the samples that count or of all.
+fn rmse_n(traces: &[Trace], counted: bool, tare_n: &dyn Fn(&Trace) -> f64) -> f64 {
     let (mut square, mut n) = (0.0, 0_usize);
     for trace in traces {
         let tare_n = tare_n(trace);
@@ -267,5 +298,9 @@ mod tests {
         assert!(left_n([3.9, -3.9]) < 0.3);
         assert!((left_n([7.0, 7.0]) / left_n([7.5, 7.5]) - 3.0 / 3.5).abs() < 0.05, "beyond that it is left");
         assert_eq!(tare_n(&Trace::default()), 0.0);
+        let tares = Tares::of(&[3.9, -2.0].map(trace));
+        assert!((3.7..4.1).contains(&tares.largest_n) && tares.beside_n < 0.2 && tares.left_n > 2.9, "{tares:?}");
+        assert!(tares.words().is_some_and(|words| words.contains("up to 4.00 N")));
+        assert_eq!(Tares::of(&[0.0, 0.05].map(trace)).words(), None);
     }
 }

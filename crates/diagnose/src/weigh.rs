@@ -32,6 +32,9 @@ impl Diagnosis {
         let numbers = self.numbers(agreement);
         self.unexplained_share = numbers.share_unexplained(&self.effects);
         self.statement = words::statement(self.verdict, &self.effects, &numbers, &self.regions, &self.unexplained);
+        if self.verdict == Verdict::Consistent {
+            self.statement += self.tares.words().as_deref().unwrap_or_default();
+        }
         self.statement += &words::nameless(&self.nameless);
         self.statement += &words::as_well(&self.as_well);
         if let Some(empirical) = &mut self.empirical {
