@@ -39,8 +39,8 @@ impl Effect for RubberHysteresis {
 }
 
 /// Slip distance below which a loop is that of dry friction: strands turn over within some tenths of a millimetre, rubber is strained by
-/// more. Of 27 looked-at names that had a shape all six with less were wrong, two of them in healthy muscles whose friction has a part
-/// that no pressure makes, and of the 21 with more all but one right.
+/// more. Of 21 looked-at names the four with less were wrong, two of them in healthy muscles whose friction has a part that no pressure
+/// makes, and of the 17 with more one.
 const DRY_M: f64 = 4e-4;
 
 struct State {
