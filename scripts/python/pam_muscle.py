@@ -31,6 +31,10 @@ import numpy as np
 # --- Eq. 11 ------------------------------------------------------------------------------------------------------------------
 
 
+# C10 + C01 of latex, in Pa: what effects of rubber are measured against.
+LATEX_PA = 2.2e5
+
+
 class Eq11:
     """Eq. 11 of one muscle: gas on a braid, rubber, strands that stretch, friction. Scalars and arrays alike."""
 
@@ -124,7 +128,7 @@ class Eq11:
                 friction_n = friction_n + self.strand_friction * (contact_m2 * pressure_pa)
             static_n = gas_n + self.k3_n + bladder_n - self.braid_n(pressure_pa, length_m)
             per_pa = self.c10_share * by_c10 + (1.0 - self.c10_share) * by_c01
-        return Base(gas_n, normal_n, static_n, friction_n, per_pa * 2.2e5)
+        return Base(gas_n, normal_n, static_n, friction_n, per_pa * LATEX_PA)
 
     def force_n(self, pressure_pa, length_m, direction):
         """Force, with friction against the direction of motion: +1 contracting, -1 extending."""
@@ -511,7 +515,7 @@ class MullinsSoftening:
         self.largest, self.travelled = values.get("past_contraction", -1.0), values.get("past_travel", 0.0)
         self.longest = values.get("past_extension", -1.0)
         # 6 (C10 + C01) of latex on the section of the bladder, and where an ideal braid pulls no more.
-        self.stiffness_n = 6.0 * 2.2e5 * eq11.rubber_m3 / eq11.rest_length_m
+        self.stiffness_n = 6.0 * LATEX_PA * eq11.rubber_m3 / eq11.rest_length_m
         self.slack_contraction = eq11.max_contraction_ratio
 
     def pulls(self, now, base):

@@ -291,8 +291,9 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
     };
     let typical = written.effects.is_empty().then(typical).transpose()?;
     let matters_above_n = question.limits.matters_above_n;
-    let neither_is_followed = typical
-        .is_some_and(|typical| matters_above_n.is_none() && typical.neither_is_followed(&fitted_traces, &held_traces));
+    let [tares, held_tares] = [&fitted_traces, &held_traces].map(|traces| Tares::of(traces));
+    let neither_is_followed =
+        typical.is_some_and(|typical| matters_above_n.is_none() && typical.neither_is_followed(&tares, &held_tares));
     let is_missed = typical.is_some_and(|typical| typical.is_missed(matters_above_n));
     // Where hold-outs alone speak against a model that nothing is missing in.
     let in_question = typical
@@ -354,7 +355,7 @@ pub fn diagnose_observed(request: Request, observer: &dyn Fn(u64, u64)) -> Resul
         next_experiment,
         sizes,
         typically_misses,
-        tares: Tares::of(&fitted_traces),
+        tares,
         pooled,
         nameless: found.nameless.clone(),
         as_well: found.as_well.clone(),

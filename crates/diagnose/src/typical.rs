@@ -25,7 +25,7 @@ const ALL_WITHIN: f64 = 2.5;
 
 /// Share of the largest force by which the tare of a load cell may differ from recording to recording. Of twenty healthy muscles of a
 /// stranger's bench, fourteen of which have a tare of their own in each recording, of up to 0.5 % of the range and six times the noise,
-/// six were not `consistent` with none; of eight of another one, whose tares are up to 1.5 % of it, two with half of this. None of 52
+/// six were not `consistent` with none; of eight of another one, whose tares are up to 1.5 % of it, two with half of this. None of 46
 /// looked-at mismatches without a name is `consistent` by it.
 const TARE_SHARE: f64 = 0.01;
 
@@ -91,10 +91,9 @@ impl Typical {
 
     /// Whether neither the `fitted` recordings nor the `held` ones are followed, stretches that are missed by far included, a tare of each
     /// beside. Of a muscle that lacks nothing one of them is: turns at which the direction is in doubt spoil one alone.
-    pub(crate) fn neither_is_followed(&self, fitted: &[Trace], held: &[Trace]) -> bool {
-        let is_missed = |of: &[Trace], sensors_n: f64| {
-            let [counted_n, all_n] = [true, false].map(|counted| rmse_n(of, counted, &tare_n));
-            counted_n > FOLLOWED_WITHIN * sensors_n && all_n > ALL_WITHIN * sensors_n
+    pub(crate) fn neither_is_followed(&self, fitted: &Tares, held: &Tares) -> bool {
+        let is_missed = |of: &Tares, sensors_n: f64| {
+            of.beside_n > FOLLOWED_WITHIN * sensors_n && of.beside_all_n > ALL_WITHIN * sensors_n
         };
         is_missed(fitted, self.sensors_n.0) && is_missed(held, self.sensors_n.1)
     }
@@ -114,15 +113,34 @@ pub(crate) struct Tares {
     pub(crate) left_n: f64,
     /// The same beside the tares.
     pub(crate) beside_n: f64,
+    /// And of all samples.
+    beside_all_n: f64,
 }
 
 impl Tares {
     /// Of what models leave of `traces`.
     pub(crate) fn of(traces: &[Trace]) -> Self {
-        let largest_n = traces.iter().map(tare_n).map(f64::abs).fold(0.0, f64::max);
-        let [left_n, beside_n] =
-            [&|_: &Trace| 0.0, &tare_n as &dyn Fn(&Trace) -> f64].map(|tare_n| rmse_n(traces, true, tare_n));
-        Self { largest_n, left_n, beside_n }
+        let (mut largest_n, mut n_counted, mut n) = (0.0_f64, 0_usize, 0_usize);
+        let [mut left, mut beside, mut beside_all] = [0.0; 3];
+        for trace in traces {
+            let tare_n = tare_n(trace);
+            largest_n = largest_n.max(tare_n.abs());
+            for ((force_n, model_n), settled) in trace.force_n.iter().zip(&trace.model_n).zip(&trace.settled) {
+                let left_n = force_n - model_n;
+                let square = (left_n - tare_n).powi(2);
+                (beside_all, n) = (beside_all + square, n + 1);
+                if *settled {
+                    (left, beside, n_counted) = (left + left_n * left_n, beside + square, n_counted + 1);
+                }
+            }
+        }
+        let rmse_n = |square: f64, n: usize| (square / n.max(1) as f64).sqrt();
+        Self {
+            largest_n,
+            left_n: rmse_n(left, n_counted),
+            beside_n: rmse_n(beside, n_counted),
+            beside_all_n: rmse_n(beside_all, n),
+        }
     }
 
     /// In words, where they are most of what is left.
@@ -148,20 +166,6 @@ fn left_beside_tares_n(traces: &[Trace]) -> f64 {
         counted_n(trace).map(move |left_n| left_n - tare_n)
     });
     turns::typical_n(left).unwrap_or(0.0)
-}
-
-/// Root mean square of what models leave of `traces` beside `tare_n` of each, in N: of the samples that count or of all.
-fn rmse_n(traces: &[Trace], counted: bool, tare_n: &dyn Fn(&Trace) -> f64) -> f64 {
-    let (mut square, mut n) = (0.0, 0_usize);
-    for trace in traces {
-        let tare_n = tare_n(trace);
-        let left_n = trace.force_n.iter().zip(&trace.model_n).map(|(force_n, model_n)| force_n - model_n - tare_n);
-        for (left_n, _) in left_n.zip(&trace.settled).filter(|(_, settled)| !counted || **settled) {
-            square += left_n * left_n;
-            n += 1;
-        }
-    }
-    (square / n.max(1) as f64).sqrt()
 }
 
 /// What the model of `trace` leaves of each of its counted samples, in N.
@@ -232,7 +236,8 @@ mod tests {
         };
         // Half a newton of noise in what was fitted, twice that in what was held out.
         let typical = typical(0.9, 1.9);
-        let neither = |fitted: &[Trace], held: &[Trace]| typical.neither_is_followed(fitted, held);
+        let neither =
+            |fitted: &[Trace], held: &[Trace]| typical.neither_is_followed(&Tares::of(fitted), &Tares::of(held));
         assert!(neither(&left(1.1, 1.3), &left(2.1, 2.6)));
         assert!(!neither(&left(0.9, 4.0), &left(2.1, 2.6)), "reversals alone are missed");
         assert!(!neither(&left(1.1, 1.2), &left(2.1, 2.6)), "as a healthy muscle is");

@@ -196,6 +196,13 @@ fn a_direction_that_flips_before_it_turns_is_refused() {
     assert_eq!(turned.check(), Err("a threshold of the direction is negative: -1 m, 0 Pa".to_owned()));
 }
 
+/// Whether a model may have this law of friction at standstill.
+fn may_have(standstill: Standstill) -> bool {
+    let mut model = artifact(vec![]);
+    model.direction.standstill = standstill;
+    model.check().is_ok()
+}
+
 #[test]
 fn friction_that_slides_by_more_than_all_of_it_or_partly_at_once_is_refused() {
     for (over_pa, share, is_right) in [
@@ -206,9 +213,7 @@ fn friction_that_slides_by_more_than_all_of_it_or_partly_at_once_is_refused() {
         (4e4, 1.2, false),
         (-1.0, 1.0, false),
     ] {
-        let mut slid = artifact(vec![]);
-        slid.direction.standstill = Standstill::Slides { over_pa, share };
-        assert_eq!(slid.check().is_ok(), is_right, "{over_pa} Pa, {share}");
+        assert_eq!(may_have(Standstill::Slides { over_pa, share }), is_right, "{over_pa} Pa, {share}");
     }
 }
 
@@ -222,9 +227,7 @@ fn friction_that_relaxes_at_once_or_not_at_all_is_refused() {
         (3.0, 1.0, false),
         (3.0, -0.1, false),
     ] {
-        let mut relaxed = artifact(vec![]);
-        relaxed.direction.standstill = Standstill::Relaxes { time_constant_s, to };
-        assert_eq!(relaxed.check().is_ok(), is_right, "{time_constant_s} s, {to}");
+        assert_eq!(may_have(Standstill::Relaxes { time_constant_s, to }), is_right, "{time_constant_s} s, {to}");
     }
 }
 

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use pam_artifact::ModelArtifact;
 use pam_muscle::direction::{STICKS_FROM_PA, STICKS_UP_TO, Standstill};
 use pam_muscle::effects::Term;
-use pam_muscle::effects::moment::LATEX_C10_SHARE;
+use pam_muscle::effects::moment::{LATEX_C10_SHARE, LATEX_PA};
 use pam_muscle::force::braid::Braid;
 use pam_muscle::force::strand_friction::POISSON_RATIO;
 use pam_muscle::force::{ForceModel, Form, Parameter};
@@ -51,6 +51,7 @@ pub(super) fn of_eq11(model: &ForceModel) -> Vec<(String, f64)> {
     let named = [
         ("PI", PI),
         ("REST_LENGTH_M", muscle.rest_length_m),
+        ("LATEX_PA", LATEX_PA),
         ("MAX_CONTRACTION_RATIO", muscle.max_contraction_ratio()),
         ("REST_DIAMETER_M", 2.0 * muscle.rest_radius_m),
         ("AREA_M2", PI * muscle.rest_radius_m * muscle.rest_radius_m),

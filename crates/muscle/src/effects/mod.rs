@@ -157,8 +157,8 @@ pub trait Effect: Sync {
         false
     }
 
-    /// Value of parameter `index`, the shapes, behind them the amplitudes and what it keeps, where an artifact does not state it: the effect had that
-    /// value before it had the parameter.
+    /// Value of parameter `index`, the shapes, behind them the amplitudes and what it keeps, where an artifact does not state it: the
+    /// effect had that value before it had the parameter.
     fn unless_stated(&self, _index: usize) -> Option<f64> {
         None
     }

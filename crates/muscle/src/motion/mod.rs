@@ -49,8 +49,13 @@ impl Seen {
     pub fn of<'a>(instants: impl Iterator<Item = &'a Instant>) -> Self {
         const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
         let widened = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
-        let (contraction_ratio, pressure_pa, force_n, warmth_k) = (NOTHING, NOTHING, NOTHING, NOTHING);
-        let start = Self { contraction_ratio, pressure_pa, force_n, warmth_k, duration_s: f64::NEG_INFINITY };
+        let start = Self {
+            contraction_ratio: NOTHING,
+            pressure_pa: NOTHING,
+            force_n: NOTHING,
+            warmth_k: NOTHING,
+            duration_s: f64::NEG_INFINITY,
+        };
         instants.fold(start, |seen, instant| Self {
             contraction_ratio: widened(seen.contraction_ratio, instant.moment.contraction_ratio),
             pressure_pa: widened(seen.pressure_pa, instant.moment.pressure_pa),

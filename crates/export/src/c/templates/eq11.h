@@ -79,7 +79,7 @@ static inline pam_base pam_base_at(double pressure_pa, double length_m)
 /* Force of a bladder of latex, C10 + C01 = 0.22 MPa, in N: what effects of rubber are measured against. */
 static inline double pam_latex_n(const pam_base *base)
 {
-    return base->bladder_n_per_pa * 2.2e5;
+    return base->bladder_n_per_pa * PAM_LATEX_PA;
 }
 
 /* Eq. 11 alone, in N; `direction` is +1 contracting, -1 extending. */

@@ -120,6 +120,7 @@ static PAGE: Page = Page {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::catalogue::tests::seen;
     use crate::effects::moment::tests::{base, pull, still};
     use crate::geometry::tests::nominal;
 
@@ -138,13 +139,7 @@ mod tests {
 
     #[test]
     fn a_fit_looks_where_the_recording_went() {
-        let seen = Seen {
-            contraction_ratio: (0.0, 0.25),
-            pressure_pa: (0.0, 5e5),
-            force_n: (0.0, 900.0),
-            warmth_k: (0.0, 0.0),
-            duration_s: 60.0,
-        };
+        let seen = Seen { force_n: (0.0, 900.0), duration_s: 60.0, ..seen() };
         let shapes = BraidLockup.first_shapes(&seen);
         assert_eq!(shapes.len(), 12);
         assert!(shapes.iter().all(|shape| shape[0] < 0.25 && shape[0] > 0.09));

@@ -118,16 +118,11 @@ static PAGE: Page = Page {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::catalogue::tests::seen;
 
     #[test]
     fn a_fit_tries_each_channel_early_and_late() {
-        let seen = Seen {
-            contraction_ratio: (0.0, 0.2),
-            pressure_pa: (0.0, 5e5),
-            force_n: (0.0, 900.0),
-            warmth_k: (0.0, 0.0),
-            duration_s: 60.0,
-        };
+        let seen = Seen { contraction_ratio: (0.0, 0.2), force_n: (0.0, 900.0), duration_s: 60.0, ..seen() };
         let shapes = ChannelDelay.first_shapes(&seen);
         assert_eq!(shapes.len(), 24);
         for expected in [[0.005, 0.0], [0.0, -0.04], [0.01, 0.01]] {

@@ -154,6 +154,7 @@ static PAGE: Page = Page {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::catalogue::tests::seen;
     use crate::geometry::tests::nominal;
 
     #[test]
@@ -191,13 +192,7 @@ mod tests {
 
     #[test]
     fn a_fit_looks_at_the_lowest_force_and_at_zero() {
-        let seen = Seen {
-            contraction_ratio: (0.0, 0.2),
-            pressure_pa: (0.0, 5e5),
-            force_n: (-2.5, 900.0),
-            warmth_k: (0.0, 0.0),
-            duration_s: 60.0,
-        };
+        let seen = Seen { contraction_ratio: (0.0, 0.2), force_n: (-2.5, 900.0), duration_s: 60.0, ..seen() };
         assert_eq!(Slack.first_shapes(&seen), [[-2.5, 0.0], [0.0, 0.0]]);
         assert!(Slack.details(&[-2.5, 0.0]).iter().all(|shape| shape[0] == -2.5 && shape[1] > 0.0));
     }

@@ -26,7 +26,8 @@ const PROTOCOLS: [&str; 14] = [
     "dwell",
 ];
 
-fn seen() -> Seen {
+/// Where recordings of a muscle at work have been.
+pub(super) fn seen() -> Seen {
     Seen {
         contraction_ratio: (0.0, 0.25),
         pressure_pa: (0.0, 5e5),

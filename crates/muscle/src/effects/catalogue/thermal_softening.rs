@@ -103,10 +103,9 @@ impl Memory for State {
         if let Some(last_s) = self.last_s {
             // Nothing is known of the power in a gap: the muscle is taken to have cooled.
             let heating = if now.step_s > 0.0 { 0.5 * (power + self.power) } else { 0.0 };
-            let share = (-(now.time_s - last_s).max(0.0) / self.time_constant_s).exp_m1();
-            self.warmth += (self.warmth - heating) * share;
-            let behind =
-                if self.wall_lag_s > 0.0 { (-(now.time_s - last_s).max(0.0) / self.wall_lag_s).exp() } else { 0.0 };
+            let later_s = (now.time_s - last_s).max(0.0);
+            self.warmth += (self.warmth - heating) * (-later_s / self.time_constant_s).exp_m1();
+            let behind = if self.wall_lag_s > 0.0 { (-later_s / self.wall_lag_s).exp() } else { 0.0 };
             self.wall_k = now.warmth_k + (self.wall_k - now.warmth_k) * behind;
         } else {
             self.wall_k = now.warmth_k;
@@ -204,6 +203,7 @@ static PAGE: Page = Page {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::catalogue::tests::seen;
     use crate::effects::moment::tests::{base, pull, still};
     use crate::geometry::tests::nominal;
 
@@ -236,13 +236,7 @@ mod tests {
 
     #[test]
     fn a_lag_is_looked_for_where_a_temperature_was_logged() {
-        let seen = Seen {
-            warmth_k: (0.0, 0.0),
-            contraction_ratio: (0.0, 0.2),
-            pressure_pa: (0.0, 5e5),
-            force_n: (0.0, 9e2),
-            duration_s: 60.0,
-        };
+        let seen = seen();
         let lags =
             |seen: &Seen| -> Vec<f64> { ThermalSoftening.first_shapes(seen).iter().map(|shape| shape[1]).collect() };
         assert_eq!(lags(&seen), [AT_ONCE; 3]);

@@ -10,7 +10,7 @@ static inline double pam_mullins_softening_pulls(pam_mullins_softening *memory, 
     const double half_play = 5e-4;
     const double here = now->contraction_ratio;
     /* 6 (C10 + C01) of latex on the section of the bladder. */
-    const double latex_stiffness_n = 6.0 * 2.2e5 * PAM_RUBBER_VOLUME_M3 * PAM_PER_REST_LENGTH;
+    const double latex_stiffness_n = 6.0 * PAM_LATEX_PA * PAM_RUBBER_VOLUME_M3 * PAM_PER_REST_LENGTH;
     if (!memory->started) {
         memory->largest = PAM_MULLINS_SOFTENING_PAST_CONTRACTION;
         memory->travelled = PAM_MULLINS_SOFTENING_PAST_TRAVEL;
