@@ -39,6 +39,11 @@ const WORTH_A_MAP: f64 = 0.02;
 /// Times the sensors' noise that an explained mismatch may leave, root mean square, before more is looked for.
 const LEAVES_ENOUGH: f64 = 1.5;
 
+/// Share of what a static map takes up, root mean square, that a static term, the same in both directions, must take up beside it to be
+/// more than what such a map leaves of the form that eq. 11 has of no muscle. Of ten looked-at terms that stood so where nothing had to be
+/// missing three were of healthy muscles and took up 1/18 to 1/31; the others took up 1/6 and more.
+const OF_THE_FORM: f64 = 0.1;
+
 /// Terms without a name, fitted jointly with everything else.
 #[derive(Debug)]
 pub(crate) struct Discovery {
@@ -62,6 +67,17 @@ pub(super) struct Written {
     pub(super) with: HeldOut,
     /// What else was in question, with how often draws of blocks choose it, this one first.
     pub(super) chosen: Vec<(Said, f64)>,
+}
+
+impl Written {
+    /// Whether it is what the static map of `found` leaves of the form of eq. 11.
+    fn is_of_the_form(&self, found: &Found) -> bool {
+        let taken_up = |without: &HeldOut, with: &HeldOut| without.mean_square() - with.mean_square();
+        let of_the_map = taken_up(&found.base.held_out, &found.whole.held_out);
+        self.sentence.is_static()
+            && !self.sentence.scale.has_direction()
+            && taken_up(&self.without, &self.with) < OF_THE_FORM.powi(2) * of_the_map
+    }
 }
 
 /// Base and effects with terms, and what is in beside them.
@@ -164,6 +180,9 @@ pub(crate) fn discover(
         let best = best.min_by(|one, other| left_n(&one.1).total_cmp(&left_n(&other.1)));
         let next = best.or_else(|| rest.into_iter().find_map(confirmed));
         let Some((next, now, now_kept)) = next else { break };
+        if verdict == Verdict::Consistent && next.terms.last().is_some_and(|term| term.is_of_the_form(found)) {
+            break;
+        }
         (smooth, last, kept) = (next, now, Some(now_kept));
     }
     let kept = kept?;

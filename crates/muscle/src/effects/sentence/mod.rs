@@ -66,7 +66,7 @@ impl Sentence {
     }
 
     /// Whether it depends on pressure, length and direction alone.
-    pub(crate) fn is_static(&self) -> bool {
+    pub fn is_static(&self) -> bool {
         let is_state = matches!(self.driver, Driver::Pressure | Driver::Contraction | Driver::Force);
         self.memory == Recall::None && is_state
     }
