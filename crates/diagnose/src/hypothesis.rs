@@ -129,6 +129,12 @@ fn past(effect: &dyn Effect, track: &Track, muscle: &Muscle) -> Past {
     past
 }
 
+/// Effects among `guesses`, each once however often it happened.
+pub(crate) fn n_effects(guesses: &[CandidateEffect]) -> usize {
+    let is_first = |index: &usize| guesses[..*index].iter().all(|before| before.id() != guesses[*index].id());
+    (0..guesses.len()).filter(is_first).count()
+}
+
 /// Amplitudes of several guesses together.
 pub fn n_amplitudes(guesses: &[CandidateEffect]) -> usize {
     guesses.iter().map(|guess| guess.amplitudes().len()).sum()

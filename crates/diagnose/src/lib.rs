@@ -21,6 +21,7 @@ pub mod error;
 mod events;
 pub mod explain;
 mod forms;
+mod further_steps;
 pub mod given;
 pub mod group;
 mod held;

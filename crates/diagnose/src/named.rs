@@ -121,8 +121,76 @@ pub(crate) fn named(
         list.push(EffectEntry::new(&other.id, other.parameters.clone()));
         named.push(other);
     }
+    let mut named = each_once(named, |id| together(setting, found, id));
     named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
     (named, list)
+}
+
+/// `named`, of which what happened several times is one, with the parameters of each time and the evidence of all `together`.
+fn each_once(named: Vec<NamedEffect>, together: impl Fn(&str) -> Option<Evidence>) -> Vec<NamedEffect> {
+    let mut once: Vec<(NamedEffect, usize)> = Vec::new();
+    for effect in named {
+        match once.iter_mut().find(|(first, _)| first.id == effect.id) {
+            Some((first, times)) => {
+                first.parameters.extend(effect.parameters);
+                *times += 1;
+            }
+            None => once.push((effect, 1)),
+        }
+    }
+    let said = |(mut effect, times): (NamedEffect, usize)| {
+        if times > 1 {
+            effect.name = format!("{} ({times} times)", effect.name);
+            effect.evidence = together(&effect.id).unwrap_or(effect.evidence);
+        }
+        effect
+    };
+    once.into_iter().map(said).collect()
+}
+
+/// Evidence for all that `found` has of the effect `id`.
+fn together(setting: &Setting<'_>, found: &Found, id: &str) -> Option<Evidence> {
+    let best = &found.best.state;
+    let others = best.guesses.iter().filter(|guess| guess.id() != id).cloned().collect();
+    let without = setting.hold_out(&setting.fit_near(others, best)?)?;
+    Some(evidence(&without, &found.best.held_out, found.first.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pam_muscle::effects::effect;
+
+    #[test]
+    fn what_happened_several_times_is_named_once_with_all_its_instants() {
+        let evidence = |log_ratio: f64| Evidence {
+            log_ratio,
+            rmse_without_n: 2.0,
+            rmse_with_n: 1.0,
+            blocks_improved: 8,
+            n_blocks: 8,
+            p_value: 0.01,
+        };
+        let named = |id: &str, instant_s: f64| {
+            let instant = ParameterEntry {
+                name: "instant_s".to_owned(),
+                value: instant_s,
+                unit: "s".to_owned(),
+                stderr: None,
+                status: ParameterStatus::Fitted,
+            };
+            named_besides(effect(id).expect("an id"), vec![instant], evidence(3.0))
+        };
+        let once =
+            each_once(vec![named("force-step", 12.0), named("pressure-lag", 0.1), named("force-step", 31.0)], |id| {
+                (id == "force-step").then(|| evidence(9.0))
+            });
+        let said: Vec<(&str, usize, f64)> = once
+            .iter()
+            .map(|effect| (effect.name.as_str(), effect.parameters.len(), effect.evidence.log_ratio))
+            .collect();
+        assert_eq!(said, [("step of the force (2 times)", 2, 9.0), (once[1].name.as_str(), 1, 3.0)]);
+    }
 }
 
 /// What became of every candidate of the first look; `besides` are ids that were named besides what the search took.

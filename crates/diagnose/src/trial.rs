@@ -6,6 +6,7 @@ use pam_muscle::effects::{Effect, Kind, Seen, Shape, effect};
 use rayon::prelude::*;
 
 use crate::events;
+use crate::further_steps;
 use crate::hypothesis::{Beginning, CandidateEffect, n_amplitudes};
 use crate::joint::HeldOut;
 use crate::search::chance;
@@ -17,6 +18,8 @@ use crate::steps;
 pub struct Trial {
     /// The candidate.
     pub guess: CandidateEffect,
+    /// Events of the same kind beside it, which it is judged with.
+    pub further: Vec<CandidateEffect>,
     /// Mean square of the joint fit over the sampled instants, in N².
     pub mean_square: f64,
     /// Mean squares over held-out blocks without it, beside the same nuisances.
@@ -195,11 +198,15 @@ pub fn among(
             let is_other = guess.effect.kind() == Kind::Event && !events::is_even(setting, state, &guess);
             if is_other || mean_square > (1.0 - LEAST_GAIN) * thin.fit.mean_square {
                 let (before, held_out) = (before.clone(), before.clone());
-                return Some(Trial { guess, mean_square, before, held_out, log_ratio: 0.0 });
+                return Some(Trial { guess, further: Vec::new(), mean_square, before, held_out, log_ratio: 0.0 });
             }
-            let (held_out, is_pressed) = weigh(setting, state, &guess)?;
+            let further = match guess.effect.kind() {
+                Kind::Event => further_steps::beside(setting, state, &guess),
+                _ => Vec::new(),
+            };
+            let (held_out, is_pressed) = weigh(setting, state, &guess, &further)?;
             let beginnings = if guess.has_own_beginnings() { setting.track.recordings.len() } else { 0 };
-            let kept = share_kept(&guess, is_pressed, beginnings);
+            let kept = share_kept(&guess, is_pressed, beginnings + n_parameters(&further));
             let mut evidence = before.log_ratio(&held_out);
             if guess.has_own_beginnings() {
                 // What only the beginnings gain says that recordings differ, not by what.
@@ -207,7 +214,7 @@ pub fn among(
                 evidence = evidence.min(begun.log_ratio(&held_out));
             }
             let log_ratio = kept * evidence;
-            Some(Trial { guess, mean_square, before: before.clone(), held_out, log_ratio })
+            Some(Trial { guess, further, mean_square, before: before.clone(), held_out, log_ratio })
         })
         .collect();
     trials.sort_by(|left, right| right.log_ratio.total_cmp(&left.log_ratio));
@@ -238,21 +245,31 @@ pub(crate) fn restore_leaders(trials: &mut [Trial]) {
 }
 
 /// Share of its evidence that `guess` keeps for what it is and how freely it was found; `is_pressed` where an amplitude presses
-/// against the largest that physics has for it, `beginnings` memories of what went before were fitted beside it.
-pub(crate) fn share_kept(guess: &CandidateEffect, is_pressed: bool, beginnings: usize) -> f64 {
+/// against the largest that physics has for it, `more` parameters were fitted beside it: memories of what went before, and further events.
+pub(crate) fn share_kept(guess: &CandidateEffect, is_pressed: bool, more: usize) -> f64 {
     let looked_for = if guess.effect.kind() == Kind::Event { EVENT_CHARGE } else { 1.0 };
     let strained = if is_pressed { PRESSED_CHARGE } else { 1.0 };
     let degenerate = if is_degenerate(guess.effect, &guess.shape) { DEGENERATE_CHARGE } else { 1.0 };
-    let n_parameters = guess.effect.shape().len() + guess.amplitudes().len() + beginnings;
-    let freedom = 1.0 - FREEDOM_CHARGE * n_parameters.saturating_sub(1) as f64;
+    let n_parameters = n_parameters(std::slice::from_ref(guess)) + more;
+    let freedom = (1.0 - FREEDOM_CHARGE * n_parameters.saturating_sub(1) as f64).max(0.0);
     looked_for * strained * degenerate * freedom
 }
 
-/// Mean squares over held-out blocks of `state` with one more guess, and whether an amplitude of that presses against the
+/// Parameters of `guesses`, shapes and amplitudes.
+fn n_parameters(guesses: &[CandidateEffect]) -> usize {
+    guesses.iter().map(|guess| guess.effect.shape().len() + guess.amplitudes().len()).sum()
+}
+
+/// Mean squares over held-out blocks of `state` with one more guess and its `further` events, and whether an amplitude of that presses against the
 /// largest that physics has for it: the data want something else of that shape.
-pub(crate) fn weigh(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> Option<(HeldOut, bool)> {
-    if !guess.only_adds() {
-        return Some((setting.hold_out(&with(setting, state, guess)?)?, false));
+pub(crate) fn weigh(
+    setting: &Setting<'_>,
+    state: &State,
+    guess: &CandidateEffect,
+    further: &[CandidateEffect],
+) -> Option<(HeldOut, bool)> {
+    if !guess.only_adds() || !further.is_empty() {
+        return Some((setting.hold_out(&with(setting, state, guess, further)?)?, false));
     }
     let (fit, held_out) = setting.weigh_more(state, guess)?;
     let amplitudes = guess.amplitudes();
@@ -274,9 +291,16 @@ pub fn mean_square(setting: &Setting<'_>, state: &State, guess: &CandidateEffect
     }
 }
 
-/// `state` with one more guess.
-pub fn with(setting: &Setting<'_>, state: &State, guess: &CandidateEffect) -> Option<State> {
-    setting.fit_near(state.guesses_with(guess), state)
+/// `state` with one more guess and its `further` events.
+pub fn with(
+    setting: &Setting<'_>,
+    state: &State,
+    guess: &CandidateEffect,
+    further: &[CandidateEffect],
+) -> Option<State> {
+    let mut guesses = state.guesses_with(guess);
+    guesses.extend_from_slice(further);
+    setting.fit_near(guesses, state)
 }
 
 /// Better values of the shape parameters of `guess` on top of `state`, one after the other, `sweeps` times; and the mean
@@ -364,7 +388,7 @@ mod tests {
             let (sign, beginning) = (crate::hypothesis::Sign::Any, Beginning::Fresh);
             let guess = CandidateEffect { effect: of(id), shape: shape.to_vec(), sign, beginning };
             let held_out = HeldOut { blocks: vec![(-log_ratio).exp()], ..held.clone() };
-            Trial { guess, mean_square: 1.0, before: held.clone(), held_out, log_ratio }
+            Trial { guess, further: Vec::new(), mean_square: 1.0, before: held.clone(), held_out, log_ratio }
         };
         let first = |id: &str, shape: &[f64], log_ratio: f64, other: f64| {
             let mut trials = [trial(id, shape, log_ratio), trial("channel-delay", &[0.02, 0.0], other)];

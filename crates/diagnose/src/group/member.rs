@@ -169,7 +169,7 @@ impl<'a> Member<'a> {
         for explanation in &self.explanations {
             let (state, held_out) = explanation.seen(thinly);
             better(&mut without, held_out, explanation.cost());
-            if let Some((held_out, _)) = trial::weigh(&setting, state, guess) {
+            if let Some((held_out, _)) = trial::weigh(&setting, state, guess, &[]) {
                 better(&mut with, &held_out, explanation.cost());
             }
         }
@@ -189,7 +189,7 @@ impl<'a> Member<'a> {
     pub(super) fn fitted(&self, guess: &CandidateEffect) -> Option<Fitted> {
         let setting = self.setting();
         let fits = self.explanations.iter().filter_map(|explanation| {
-            let state = trial::with(&setting, &explanation.whole, guess)?;
+            let state = trial::with(&setting, &explanation.whole, guess, &[])?;
             let gained = self.explanations[0].held_out.log_ratio(&setting.hold_out(&state)?) - explanation.cost();
             Some((gained, state))
         });

@@ -13,6 +13,7 @@ use super::settle::{second_look, settle};
 use super::worth::worth;
 use super::{Judged, Limits, again};
 use crate::coordinates::Coordinates;
+use crate::hypothesis::n_effects;
 use crate::nuisance::Nuisance;
 use crate::state::Setting;
 use crate::trial::{Shapes, Trial};
@@ -103,7 +104,7 @@ impl ForwardSelection<'_> {
         let (mut selected, mut trials) = (start, trials);
         while let Some(next) = self.with_best(&selected, &trials) {
             selected = next;
-            if selected.best.state.guesses.len() >= self.limits.max_effects {
+            if n_effects(&selected.best.state.guesses) >= self.limits.max_effects {
                 break;
             }
             trials = self.look(&mut selected)?;

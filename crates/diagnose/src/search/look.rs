@@ -190,7 +190,7 @@ impl Look<'_> {
                 CandidateEffect { effect, shape, sign: CandidateEffect::signs(effect)[0], beginning: Beginning::Fresh };
             let mean_square = best.state.fit.mean_square;
             let (before, held_out) = (best.held_out.clone(), best.held_out.clone());
-            Trial { guess, mean_square, before, held_out, log_ratio: 0.0 }
+            Trial { guess, further: Vec::new(), mean_square, before, held_out, log_ratio: 0.0 }
         };
         self.plain.effects.iter().filter(is_missing).map(nothing).collect()
     }

@@ -14,7 +14,7 @@ use pam_muscle::Coordinate;
 use pam_muscle::effects::Effect;
 
 use crate::coordinates::Coordinates;
-use crate::hypothesis::CandidateEffect;
+use crate::hypothesis::{CandidateEffect, n_effects};
 use crate::joint::HeldOut;
 use crate::nameless::{OF_THE_BRAID, Other};
 use crate::nuisance::{Group, Nuisance};
@@ -233,7 +233,7 @@ pub fn search(
     let odd = {
         let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
         let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
-        (best.state.guesses.len() < limits.max_effects).then(|| look.odd_static(&best)).flatten()
+        (n_effects(&best.state.guesses) < limits.max_effects).then(|| look.odd_static(&best)).flatten()
     };
     let mut as_well = Vec::new();
     match odd {
@@ -249,7 +249,7 @@ pub fn search(
     let (plain, mapped) = (&setting.beside(&beside.plain), &setting.beside(&beside.smooth));
     let look = Look { plain, mapped, free: &beside.free, coordinates: &coordinates, seen: &seen, limits };
     let mut parsimonious = Vec::new();
-    while best.state.guesses.len() < limits.max_effects {
+    while n_effects(&best.state.guesses) < limits.max_effects {
         let may_be_fixture = !ends_stretch && parsimonious.is_empty();
         let Some(next) = look.static_effect(&best, &base, floor_square, may_be_fixture) else { break };
         parsimonious.push(next.state.guesses[next.state.guesses.len() - 1].id());

@@ -22,7 +22,7 @@ pub(super) fn settle(setting: &Setting<'_>, best: &Judged, chosen: &Trial) -> Op
     };
     let setting = &setting.beside(&begun);
     let sampled = setting.sampled();
-    let mut state = trial::with(&sampled, &thin, &guess)?;
+    let mut state = trial::with(&sampled, &thin, &guess, &chosen.further)?;
     if state.guesses.len() > 1 {
         state = refine_all(&sampled, state)?;
     }

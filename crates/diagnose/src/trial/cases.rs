@@ -43,7 +43,7 @@ fn a_step_is_half_the_way_to_the_nearer_neighbor() {
 /// Whether rubber hysteresis of `width_n`, or a taper, presses where it is fitted to recordings that have it.
 fn is_pressed(id: &'static str, shape: &'static [f64], amplitudes: &'static [f64]) -> bool {
     let given = Given::of(&PROTOCOLS, &[(id, shape, amplitudes)]);
-    weigh(&given.setting(), &base(&given), &guess(id, shape)).expect("a fit").1
+    weigh(&given.setting(), &base(&given), &guess(id, shape), &[]).expect("a fit").1
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn an_amplitude_presses_at_the_largest_that_physics_has_and_not_at_nothing() {
 fn what_acts_through_the_base_has_no_amplitude_that_could_press() {
     let given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
     let (held_out, is_pressed) =
-        weigh(&given.setting(), &base(&given), &guess("pressure-lag", &[0.15, 0.0])).expect("a fit");
+        weigh(&given.setting(), &base(&given), &guess("pressure-lag", &[0.15, 0.0]), &[]).expect("a fit");
     assert!(!is_pressed);
     let before = judged(&given.setting(), base(&given)).expect("folds").held_out;
     assert!(held_out.mean_square() < 0.01 * before.mean_square());
@@ -110,7 +110,7 @@ fn every_effect_that_may_be_taken_is_tried_once_and_the_best_is_first() {
 fn what_is_in_already_is_not_tried_again() {
     let mut given = Given::of(&PROTOCOLS, &[("pressure-lag", &[0.15, 0.0], &[])]);
     given.disturb();
-    let state = with(&given.setting(), &base(&given), &guess("pressure-lag", &[0.15, 0.0])).expect("a fit");
+    let state = with(&given.setting(), &base(&given), &guess("pressure-lag", &[0.15, 0.0]), &[]).expect("a fit");
     assert_eq!(state.guesses.len(), 1);
     assert!(trials(&given, &state, &Shapes::new(), &["pressure-lag"]).is_empty());
 }

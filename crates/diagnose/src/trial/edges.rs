@@ -52,7 +52,7 @@ fn presses_at(share: f64) -> bool {
     let shape: &[f64] = &[2e-3];
     let largest_n = guess("rubber-hysteresis", shape).amplitudes()[0].range.1;
     let given = Given::of(&PROTOCOLS, &[("rubber-hysteresis", shape, &[share * largest_n])]);
-    weigh(&given.setting(), &base(&given), &guess("rubber-hysteresis", shape)).expect("a fit").1
+    weigh(&given.setting(), &base(&given), &guess("rubber-hysteresis", shape), &[]).expect("a fit").1
 }
 
 #[test]

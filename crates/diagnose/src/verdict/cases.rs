@@ -33,6 +33,7 @@ fn held(square: f64) -> HeldOut {
 pub(super) fn lag_with(found: &mut Found, rivals: &[(&str, f64, f64)]) {
     found.best.state.guesses = vec![guess("pressure-lag")];
     let rivals = rivals.iter().map(|&(id, left, log_ratio)| Trial {
+        further: Vec::new(),
         guess: guess(id),
         mean_square: left,
         before: held(4.0),
