@@ -317,7 +317,7 @@ impl Discovery {
 mod tests {
     use std::sync::OnceLock;
 
-    use pam_muscle::effects::sentence::{Driver, Recall, Scale};
+    use pam_muscle::effects::sentence::{Curve, Driver, Recall, Scale};
 
     use super::*;
     use crate::rehearsal::tests::Given;
@@ -383,6 +383,22 @@ mod tests {
     #[test]
     fn where_nothing_is_missing_nothing_is_discovered() {
         assert_eq!(Searched::of(bumped(0.0)).discovered(None), []);
+    }
+
+    #[test]
+    fn a_static_term_is_of_the_form_of_a_muscle_where_it_takes_up_less_than_a_tenth_of_what_a_map_does() {
+        let held = |square: f64| HeldOut { blocks: vec![square; 8], counts: vec![10.0; 8], floor_square: 0.0 };
+        let mut found = Searched::of(bumped(0.0)).found;
+        (found.base.held_out, found.whole.held_out) = (held(101.0), held(1.0));
+        let is_of_the_form = |driver: Driver, scale: Scale, gain_n: f64| {
+            let sentence = Sentence { driver, memory: Recall::None, scale, shape: Curve::Line, seen: [0.0, 0.2] };
+            let (without, with) = (held(2.0), held(2.0 - gain_n * gain_n));
+            Written { sentence, bends: None, without, with, chosen: Vec::new() }.is_of_the_form(&found)
+        };
+        assert!(is_of_the_form(Driver::Contraction, Scale::Pressure, 0.99));
+        assert!(!is_of_the_form(Driver::Contraction, Scale::Pressure, 1.01), "more than a map leaves");
+        assert!(!is_of_the_form(Driver::Contraction, Scale::Friction, 0.5), "friction");
+        assert!(!is_of_the_form(Driver::Speed, Scale::One, 0.5), "no static force");
     }
 
     #[test]

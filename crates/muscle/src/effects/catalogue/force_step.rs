@@ -87,7 +87,8 @@ static PAGE: Page = Page {
     name: "step of the force",
     summary: "At one instant the force jumps and stays: a clamp slipped, the cell was knocked or re-zeroed, a strand \
               broke. Everything after that instant is shifted, in that recording alone or, where the step goes on, in all \
-              that follow; the model then is that of the muscle after it.",
+              that follow; the model then is that of the muscle after it. What slipped once may slip again: several steps are judged \
+              together, and each is one term of the model.",
     equation: "F = F_base + A [t ≥ t₀], in one recording; F = F_base - A [t < t₀] where it goes on",
     symbols: &[
         Symbol { symbol: "A", unit: "N", meaning: "height of the step, either sign; 0.5 to 50 N" },

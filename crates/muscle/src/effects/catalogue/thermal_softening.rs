@@ -20,8 +20,9 @@ const MOST: f64 = 40.0;
 /// Softening per kelvin of a logged temperature, at most: 0.8 % of a bladder three times as stiff as latex.
 const MOST_PER_K: f64 = 0.025;
 
-/// Share of the gas force that a kelvin of a logged temperature takes, at most: a hundred times what it does to a good load cell.
-const MOST_OF_GAS_PER_K: f64 = 0.02;
+/// Share of the gas force that a kelvin of a logged temperature takes, at most: what a gauge of bare silicon loses of its sensitivity, ten
+/// times what a good load cell does. Nothing that is known takes more of the force of the gas.
+const MOST_OF_GAS_PER_K: f64 = 2e-3;
 
 /// Lag of a wall that is as warm as the thermometer says.
 const AT_ONCE: f64 = 0.0;
