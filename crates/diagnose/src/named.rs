@@ -126,24 +126,25 @@ pub(crate) fn named(
     (named, list)
 }
 
-/// `named`, of which what happened several times is one, with the parameters of each time and the evidence of all `together`.
+/// `named`, of which what happened several times is one, with the parameters of each time in order and the evidence of all `together`.
 fn each_once(named: Vec<NamedEffect>, together: impl Fn(&str) -> Option<Evidence>) -> Vec<NamedEffect> {
-    let mut once: Vec<(NamedEffect, usize)> = Vec::new();
-    for effect in named {
+    let mut once: Vec<(NamedEffect, Vec<Vec<ParameterEntry>>)> = Vec::new();
+    for mut effect in named {
+        let parameters = std::mem::take(&mut effect.parameters);
         match once.iter_mut().find(|(first, _)| first.id == effect.id) {
-            Some((first, times)) => {
-                first.parameters.extend(effect.parameters);
-                *times += 1;
-            }
-            None => once.push((effect, 1)),
+            Some((_, times)) => times.push(parameters),
+            None => once.push((effect, vec![parameters])),
         }
     }
-    let said = |(mut effect, times): (NamedEffect, usize)| {
-        if times > 1 {
-            effect.name = format!("{} ({times} times)", effect.name);
+    let said = |(mut effect, mut times): (NamedEffect, Vec<Vec<ParameterEntry>>)| {
+        if times.len() > 1 {
+            effect.name = format!("{} ({} times)", effect.name, times.len());
             effect.evidence = together(&effect.id).unwrap_or(effect.evidence);
+            // By recording and instant.
+            let values = |time: &[ParameterEntry]| time.iter().map(|entry| entry.value).collect::<Vec<f64>>();
+            times.sort_by(|one, other| values(one).partial_cmp(&values(other)).unwrap_or(std::cmp::Ordering::Equal));
         }
-        effect
+        NamedEffect { parameters: times.concat(), ..effect }
     };
     once.into_iter().map(said).collect()
 }
@@ -154,43 +155,6 @@ fn together(setting: &Setting<'_>, found: &Found, id: &str) -> Option<Evidence> 
     let others = best.guesses.iter().filter(|guess| guess.id() != id).cloned().collect();
     let without = setting.hold_out(&setting.fit_near(others, best)?)?;
     Some(evidence(&without, &found.best.held_out, found.first.len()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use pam_muscle::effects::effect;
-
-    #[test]
-    fn what_happened_several_times_is_named_once_with_all_its_instants() {
-        let evidence = |log_ratio: f64| Evidence {
-            log_ratio,
-            rmse_without_n: 2.0,
-            rmse_with_n: 1.0,
-            blocks_improved: 8,
-            n_blocks: 8,
-            p_value: 0.01,
-        };
-        let named = |id: &str, instant_s: f64| {
-            let instant = ParameterEntry {
-                name: "instant_s".to_owned(),
-                value: instant_s,
-                unit: "s".to_owned(),
-                stderr: None,
-                status: ParameterStatus::Fitted,
-            };
-            named_besides(effect(id).expect("an id"), vec![instant], evidence(3.0))
-        };
-        let once =
-            each_once(vec![named("force-step", 12.0), named("pressure-lag", 0.1), named("force-step", 31.0)], |id| {
-                (id == "force-step").then(|| evidence(9.0))
-            });
-        let said: Vec<(&str, usize, f64)> = once
-            .iter()
-            .map(|effect| (effect.name.as_str(), effect.parameters.len(), effect.evidence.log_ratio))
-            .collect();
-        assert_eq!(said, [("step of the force (2 times)", 2, 9.0), (once[1].name.as_str(), 1, 3.0)]);
-    }
 }
 
 /// What became of every candidate of the first look; `besides` are ids that were named besides what the search took.
@@ -239,4 +203,42 @@ pub(crate) fn candidates(found: &Found, besides: &[&str]) -> Vec<Candidate> {
             }
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pam_muscle::effects::effect;
+
+    #[test]
+    fn what_happened_several_times_is_named_once_with_all_its_instants() {
+        let evidence = |log_ratio: f64| Evidence {
+            log_ratio,
+            rmse_without_n: 2.0,
+            rmse_with_n: 1.0,
+            blocks_improved: 8,
+            n_blocks: 8,
+            p_value: 0.01,
+        };
+        let named = |id: &str, instant_s: f64| {
+            let instant = ParameterEntry {
+                name: "instant_s".to_owned(),
+                value: instant_s,
+                unit: "s".to_owned(),
+                stderr: None,
+                status: ParameterStatus::Fitted,
+            };
+            named_besides(effect(id).expect("an id"), vec![instant], evidence(3.0))
+        };
+        let once =
+            each_once(vec![named("force-step", 31.0), named("pressure-lag", 0.1), named("force-step", 12.0)], |id| {
+                (id == "force-step").then(|| evidence(9.0))
+            });
+        let said: Vec<(&str, usize, f64)> = once
+            .iter()
+            .map(|effect| (effect.name.as_str(), effect.parameters.len(), effect.evidence.log_ratio))
+            .collect();
+        assert_eq!(once[0].parameters.iter().map(|entry| entry.value).collect::<Vec<f64>>(), [12.0, 31.0]);
+        assert_eq!(said, [("step of the force (2 times)", 2, 9.0), (once[1].name.as_str(), 1, 3.0)]);
+    }
 }
