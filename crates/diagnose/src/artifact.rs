@@ -322,16 +322,16 @@ impl Diagnosis {
                 entry.likely_cause
             ));
         }
-        let events: Vec<&str> = self
-            .augmented
-            .terms()
-            .iter()
-            .filter(|term| term.effect.kind() == Kind::Event)
-            .map(|term| term.effect.page().id)
-            .collect();
-        if !events.is_empty() {
+        let terms = self.augmented.terms().iter();
+        let mut events: Vec<&str> =
+            terms.filter(|term| term.effect.kind() == Kind::Event).map(|term| term.effect.page().id).collect();
+        let times = events.len();
+        events.dedup();
+        if times > 0 {
+            let when =
+                if times > events.len() { "in estimation recordings" } else { "once, in an estimation recording" };
             warnings.push(format!(
-                "{} happened once, in an estimation recording: other recordings are judged and predicted without it",
+                "{} happened {when}: other recordings are judged and predicted without it",
                 events.join(", ")
             ));
         }
