@@ -206,7 +206,7 @@ pub struct NamedEffect {
     pub name: String,
     /// Equation that was fitted.
     pub equation: String,
-    /// Its parameters, SI.
+    /// Its parameters, SI; of what happened several times those of each time, one after the other.
     pub parameters: Vec<ParameterEntry>,
     /// Why it is believed.
     pub evidence: Evidence,
