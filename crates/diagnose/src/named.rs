@@ -73,7 +73,7 @@ pub(crate) fn evidence(without: &HeldOut, with: &HeldOut, looks: usize) -> Evide
     }
 }
 
-/// Evidence for effect `index` of `found` within what was fitted, beside the others.
+/// Evidence for effect `index` of `found` within what was fitted, however often it happened, beside the others.
 pub(crate) fn evidence_of(found: &Found, index: usize) -> Evidence {
     let (without, with) = match found.taken.get(index) {
         Some(taken) => (&taken.without, &taken.with),
@@ -121,13 +121,13 @@ pub(crate) fn named(
         list.push(EffectEntry::new(&other.id, other.parameters.clone()));
         named.push(other);
     }
-    let mut named = each_once(named, |id| together(setting, found, id));
+    let mut named = each_once(named);
     named.sort_by(|left, right| right.evidence.log_ratio.total_cmp(&left.evidence.log_ratio));
     (named, list)
 }
 
-/// `named`, of which what happened several times is one, with the parameters of each time in order and the evidence of all `together`.
-fn each_once(named: Vec<NamedEffect>, together: impl Fn(&str) -> Option<Evidence>) -> Vec<NamedEffect> {
+/// `named`, of which what happened several times, with the evidence of all, is one with the parameters of each time in order.
+fn each_once(named: Vec<NamedEffect>) -> Vec<NamedEffect> {
     let mut once: Vec<(NamedEffect, Vec<Vec<ParameterEntry>>)> = Vec::new();
     for mut effect in named {
         let parameters = std::mem::take(&mut effect.parameters);
@@ -139,7 +139,6 @@ fn each_once(named: Vec<NamedEffect>, together: impl Fn(&str) -> Option<Evidence
     let said = |(mut effect, mut times): (NamedEffect, Vec<Vec<ParameterEntry>>)| {
         if times.len() > 1 {
             effect.name = format!("{} ({} times)", effect.name, times.len());
-            effect.evidence = together(&effect.id).unwrap_or(effect.evidence);
             // By recording and instant.
             let values = |time: &[ParameterEntry]| time.iter().map(|entry| entry.value).collect::<Vec<f64>>();
             times.sort_by(|one, other| values(one).partial_cmp(&values(other)).unwrap_or(std::cmp::Ordering::Equal));
@@ -147,14 +146,6 @@ fn each_once(named: Vec<NamedEffect>, together: impl Fn(&str) -> Option<Evidence
         NamedEffect { parameters: times.concat(), ..effect }
     };
     once.into_iter().map(said).collect()
-}
-
-/// Evidence for all that `found` has of the effect `id`.
-fn together(setting: &Setting<'_>, found: &Found, id: &str) -> Option<Evidence> {
-    let best = &found.best.state;
-    let others = best.guesses.iter().filter(|guess| guess.id() != id).cloned().collect();
-    let without = setting.hold_out(&setting.fit_near(others, best)?)?;
-    Some(evidence(&without, &found.best.held_out, found.first.len()))
 }
 
 /// What became of every candidate of the first look; `besides` are ids that were named besides what the search took.
@@ -212,8 +203,8 @@ mod tests {
 
     #[test]
     fn what_happened_several_times_is_named_once_with_all_its_instants() {
-        let evidence = |log_ratio: f64| Evidence {
-            log_ratio,
+        let evidence = Evidence {
+            log_ratio: 9.0,
             rmse_without_n: 2.0,
             rmse_with_n: 1.0,
             blocks_improved: 8,
@@ -228,17 +219,12 @@ mod tests {
                 stderr: None,
                 status: ParameterStatus::Fitted,
             };
-            named_besides(effect(id).expect("an id"), vec![instant], evidence(3.0))
+            named_besides(effect(id).expect("an id"), vec![instant], evidence)
         };
-        let once =
-            each_once(vec![named("force-step", 31.0), named("pressure-lag", 0.1), named("force-step", 12.0)], |id| {
-                (id == "force-step").then(|| evidence(9.0))
-            });
-        let said: Vec<(&str, usize, f64)> = once
-            .iter()
-            .map(|effect| (effect.name.as_str(), effect.parameters.len(), effect.evidence.log_ratio))
-            .collect();
-        assert_eq!(once[0].parameters.iter().map(|entry| entry.value).collect::<Vec<f64>>(), [12.0, 31.0]);
-        assert_eq!(said, [("step of the force (2 times)", 2, 9.0), (once[1].name.as_str(), 1, 3.0)]);
+        let once = each_once(vec![named("force-step", 31.0), named("pressure-lag", 0.1), named("force-step", 12.0)]);
+        let instants_s = |effect: &NamedEffect| effect.parameters.iter().map(|entry| entry.value).collect::<Vec<f64>>();
+        assert_eq!(once.iter().map(instants_s).collect::<Vec<_>>(), [vec![12.0, 31.0], vec![0.1]]);
+        assert_eq!(once[0].name, "step of the force (2 times)");
+        assert_eq!(once[1].name, named("pressure-lag", 0.1).name);
     }
 }

@@ -126,11 +126,6 @@ pub fn verdict(found: &Found, sizes: &Sizes, besides: bool) -> Verdict {
 /// Ids of the effects that cannot be told from effect `index`.
 pub fn alternatives(found: &Found, index: usize) -> Vec<&'static str> {
     let Some(Taken { without, with, rivals, .. }) = found.taken.get(index) else { return Vec::new() };
-    let guesses = &found.best.state.guesses;
-    // What happened several times is judged together: what could stand for one of them is no alternative.
-    if guesses.iter().filter(|guess| guess.id() == guesses[index].id()).count() > 1 {
-        return Vec::new();
-    }
     let own = without.log_ratio(with);
     let gained = without.mean_square() - with.mean_square();
     rivals

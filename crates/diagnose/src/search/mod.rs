@@ -261,9 +261,16 @@ pub fn search(
     }
     let best = at_rest(mapped, polished(mapped, best)?)?;
     let best = unless_suspected(mapped, best, &seen, &promising);
-    let mut taken = Vec::new();
+    let mut taken: Vec<Taken> = Vec::new();
     for index in 0..best.state.guesses.len() {
-        let of_the_map = parsimonious.contains(&best.state.guesses[index].id());
+        let id = best.state.guesses[index].id();
+        // What happened several times is weighed together.
+        let again_of = best.state.guesses[..index].iter().position(|guess| guess.id() == id);
+        if let Some(same) = again_of.and_then(|first| taken.get(first)).cloned() {
+            taken.push(same);
+            continue;
+        }
+        let of_the_map = parsimonious.contains(&id);
         let setting = if of_the_map { plain } else { mapped };
         let found = without(setting, &best, index, &seen, &promising);
         let Some((without, rivals)) = found else { continue };

@@ -135,7 +135,7 @@ fn refine_all(setting: &Setting<'_>, state: State) -> Option<State> {
     Some(state)
 }
 
-/// `best` without effect `index`, and what else could stand in its place.
+/// `best` without effect `index`, however often that happened, and what else could stand in its place.
 pub(super) fn without(
     setting: &Setting<'_>,
     best: &Judged,
@@ -143,7 +143,9 @@ pub(super) fn without(
     seen: &Seen,
     promising: &Shapes,
 ) -> Option<(Judged, Vec<Trial>)> {
-    let rest = judged(setting, setting.fit_without(&best.state, index)?)?;
+    let id = best.state.guesses[index].id();
+    let others = best.state.guesses.iter().filter(|guess| guess.id() != id).cloned().collect();
+    let rest = judged(setting, setting.fit_near(others, &best.state)?)?;
     let rivals = trial::among(setting, &rest.state, &rest.held_out, seen, promising, &|effect| {
         promising.contains_key(effect.page().id)
     });
@@ -157,17 +159,17 @@ fn is_better(rival: f64, own: f64) -> bool {
 
 /// Looks at every effect that was taken once more: another one in its place, or none.
 pub(super) fn second_look(setting: &Setting<'_>, best: Judged, seen: &Seen, promising: &Shapes) -> Judged {
-    let mut best = best;
-    for index in 0..best.state.guesses.len() {
-        let Some((rest, rivals)) = without(setting, &best, index, seen, promising) else { continue };
-        let Some(rival) = rivals.first() else { continue };
-        let own = rest.held_out.log_ratio(&best.held_out);
-        if is_better(rival.log_ratio, own)
+    let (mut best, mut index) = (best, 0);
+    while index < best.state.guesses.len() {
+        if let Some((rest, rivals)) = without(setting, &best, index, seen, promising)
+            && let Some(rival) = rivals.first()
+            && is_better(rival.log_ratio, rest.held_out.log_ratio(&best.held_out))
             && rival.guess.id() != best.state.guesses[index].id()
             && let Some(next) = settle(setting, &rest, rival)
         {
             best = next;
         }
+        index += 1;
     }
     best
 }
