@@ -8,7 +8,8 @@ use crate::hypothesis::{Beginning, CandidateEffect};
 use crate::state::{Setting, State};
 use crate::steps;
 
-/// Share of the mean square that is left which one more must take away.
+/// Share of the mean square that is left which one more must take away. Half or double of it changes no name in 18 looked-at cases with
+/// steps or drifts.
 const LEAST_GAIN: f64 = 0.04;
 /// Steps beside the first, at most, for each recording.
 const PER_RECORDING: usize = 2;

@@ -42,6 +42,7 @@ const LEAVES_ENOUGH: f64 = 1.5;
 /// Share of what a static map takes up, root mean square, that a static term, the same in both directions, must take up beside it to be
 /// more than what such a map leaves of the form that eq. 11 has of no muscle. Of eight looked-at terms that stood so where nothing had to be
 /// missing three were of healthy muscles and took up 0.05 to 0.08; the others took up 0.19 and more.
+/// With half of it none of the three would be consistent, with double one that something touches would be.
 const OF_THE_FORM: f64 = 0.1;
 
 /// Terms without a name, fitted jointly with everything else.

@@ -49,6 +49,7 @@ const BEYOND_THE_BRAID: f64 = 0.5;
 /// 4 % of the load of the nominal muscle. Of 48 looked-at muscles of a stranger whose strands rub as the pressure of their contact has it,
 /// 33 that have no such friction are followed better with it, by 0.4 to 2.9 % of the load, with evidence of 12 to 57, and ten were named
 /// so. Of 18 others with such a name or doubt two that have such friction lose the name, with 2.2 and 1.7 %.
+/// With double of it a third would, with half the ten are named.
 const LEAST_OF_THE_LOAD: f64 = 0.03;
 /// Share of the load from which on friction that is all there is is none of another form of the friction of the braid: more than all of
 /// that is, 3 to 4 % of the load of the nominal muscle (15 to 19 N beside 666, 370 and 167 N at 0, 10 and 20 % contraction and 0.3 MPa, by the
