@@ -21,8 +21,9 @@ pub(crate) fn beside(setting: &Setting<'_>, state: &State, first: &CandidateEffe
     while further.len() < PER_RECORDING * setting.track.recordings.len() {
         let residuals_n = setting.residuals_n(&now);
         let left = |shape: &Vec<f64>| {
-            let guess =
-                CandidateEffect { shape: shape.clone(), beginning: beginning(setting, first, shape), ..first.clone() };
+            let is_told = first.beginning.is_told(shape[0] as usize, setting.track);
+            let beginning = if is_told { first.beginning.clone() } else { Beginning::Fresh };
+            let guess = CandidateEffect { shape: shape.clone(), beginning, ..first.clone() };
             let fit = setting.fit_more(&now, &guess)?;
             let gained = 1.0 - fit.mean_square / now.fit.mean_square;
             let is_one = gained > LEAST_GAIN
@@ -38,11 +39,6 @@ pub(crate) fn beside(setting: &Setting<'_>, state: &State, first: &CandidateEffe
         now = fitted;
     }
     further
-}
-
-/// With what a step at `shape` begins where it goes on as `first` does; after the last recording there is none that would tell.
-fn beginning(setting: &Setting<'_>, first: &CandidateEffect, shape: &[f64]) -> Beginning {
-    if shape[0] + 1.0 < setting.track.recordings.len() as f64 { first.beginning.clone() } else { Beginning::Fresh }
 }
 
 #[cfg(test)]

@@ -39,6 +39,11 @@ impl Beginning {
             Self::Fresh | Self::Own => Past::default(),
         }
     }
+
+    /// Whether recordings of `track` would tell that of an event in recording `index`: one that goes on after the last is told by none.
+    pub(crate) fn is_told(&self, index: usize, track: &Track) -> bool {
+        !matches!(self, Self::GoesOn(_)) || index + 1 < track.recordings.len()
+    }
 }
 
 /// Which sign the amplitudes of an effect may have.

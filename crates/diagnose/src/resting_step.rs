@@ -98,9 +98,7 @@ impl RestingStep {
         let stands_out = |jump: &Jump| jump.step_n.abs() / jump.stderr_n;
         let most = found.max_by(|left, right| stands_out(&left.1).total_cmp(&stands_out(&right.1)));
         let Some((index, jump, ends_s)) = most else { return Vec::new() };
-        let goes_on = |beginning: &Beginning| matches!(beginning, Beginning::GoesOn(_));
-        // After the last recording there is none that would tell.
-        let tells = |beginning: &Beginning| !goes_on(beginning) || index + 1 < track.recordings.len();
+        let tells = |beginning: &Beginning| beginning.is_told(index, track);
         let beginnings = CandidateEffect::beginnings(effect, track, muscle).into_iter().filter(tells);
         let step = |beginning: Beginning| {
             let shape = vec![index as f64, jump.instant_s];

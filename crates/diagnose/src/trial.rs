@@ -31,6 +31,12 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// Of `guess` alone, beside which as much is left as `before`.
+    pub(crate) fn gaining_nothing(guess: CandidateEffect, mean_square: f64, before: &HeldOut) -> Self {
+        let (before, held_out) = (before.clone(), before.clone());
+        Self { guess, further: Vec::new(), mean_square, before, held_out, log_ratio: 0.0 }
+    }
+
     /// Its evidence, whatever it is charged.
     pub(crate) fn uncharged(&self) -> f64 {
         self.before.log_ratio(&self.held_out)
@@ -139,11 +145,9 @@ pub fn among(
                     let guess = |beginning: &Beginning| {
                         (index, CandidateEffect { effect, shape: shape.clone(), sign, beginning: beginning.clone() })
                     };
-                    // After the last recording there is none that would tell.
-                    let tells = |beginning: &&Beginning| {
-                        let is_event = effect.kind() == Kind::Event && matches!(beginning, Beginning::GoesOn(_));
-                        !is_event || shape[0] + 1.0 < setting.track.recordings.len() as f64
-                    };
+                    let is_event = effect.kind() == Kind::Event;
+                    let tells =
+                        |beginning: &&Beginning| !is_event || beginning.is_told(shape[0] as usize, setting.track);
                     guesses.extend(beginnings.iter().filter(tells).map(guess));
                 }
             }
@@ -197,8 +201,7 @@ pub fn among(
         .filter_map(|(mean_square, guess)| {
             let is_other = guess.effect.kind() == Kind::Event && !events::is_even(setting, state, &guess);
             if is_other || mean_square > (1.0 - LEAST_GAIN) * thin.fit.mean_square {
-                let (before, held_out) = (before.clone(), before.clone());
-                return Some(Trial { guess, further: Vec::new(), mean_square, before, held_out, log_ratio: 0.0 });
+                return Some(Trial::gaining_nothing(guess, mean_square, before));
             }
             let further = match guess.effect.kind() {
                 Kind::Event => further_steps::beside(setting, state, &guess),
@@ -388,7 +391,7 @@ mod tests {
             let (sign, beginning) = (crate::hypothesis::Sign::Any, Beginning::Fresh);
             let guess = CandidateEffect { effect: of(id), shape: shape.to_vec(), sign, beginning };
             let held_out = HeldOut { blocks: vec![(-log_ratio).exp()], ..held.clone() };
-            Trial { guess, further: Vec::new(), mean_square: 1.0, before: held.clone(), held_out, log_ratio }
+            Trial { held_out, log_ratio, ..Trial::gaining_nothing(guess, 1.0, &held) }
         };
         let first = |id: &str, shape: &[f64], log_ratio: f64, other: f64| {
             let mut trials = [trial(id, shape, log_ratio), trial("channel-delay", &[0.02, 0.0], other)];

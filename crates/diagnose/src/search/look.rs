@@ -189,9 +189,7 @@ impl Look<'_> {
             let shape = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
             let guess =
                 CandidateEffect { effect, shape, sign: CandidateEffect::signs(effect)[0], beginning: Beginning::Fresh };
-            let mean_square = best.state.fit.mean_square;
-            let (before, held_out) = (best.held_out.clone(), best.held_out.clone());
-            Trial { guess, further: Vec::new(), mean_square, before, held_out, log_ratio: 0.0 }
+            Trial::gaining_nothing(guess, best.state.fit.mean_square, &best.held_out)
         };
         self.plain.effects.iter().filter(is_missing).map(nothing).collect()
     }

@@ -79,7 +79,7 @@ mod tests {
     fn tried(before: f64, after: f64, log_ratio: f64) -> Trial {
         let effect = effect("pressure-lag").expect("an id");
         let guess = CandidateEffect { effect, shape: vec![0.1], sign: Sign::Any, beginning: Beginning::Fresh };
-        Trial { guess, further: Vec::new(), mean_square: after, before: held(before), held_out: held(after), log_ratio }
+        Trial { held_out: held(after), log_ratio, ..Trial::gaining_nothing(guess, after, &held(before)) }
     }
 
     fn limits(confirmed: bool) -> Limits {

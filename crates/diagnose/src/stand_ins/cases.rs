@@ -90,7 +90,7 @@ fn the_only_name_goes_where_another_effect_with_a_memory_explained_more_and_is_n
     let held = |square: f64| HeldOut { blocks: vec![square], counts: vec![1.0], floor_square: 0.0 };
     let trial = |guess: CandidateEffect, log_ratio: f64| {
         let (before, held_out) = (held(log_ratio.exp()), held(1.0));
-        Trial { further: Vec::new(), guess, mean_square: 1.0, before, held_out, log_ratio: 0.0 }
+        Trial { held_out, ..Trial::gaining_nothing(guess, 1.0, &before) }
     };
     // Where the lag had evidence of 10 in the first look, and another one so much.
     let kept = |guesses: Vec<CandidateEffect>, other: CandidateEffect, log_ratio: f64, is_alternative: bool| {

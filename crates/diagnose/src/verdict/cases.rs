@@ -33,12 +33,9 @@ fn held(square: f64) -> HeldOut {
 pub(super) fn lag_with(found: &mut Found, rivals: &[(&str, f64, f64)]) {
     found.best.state.guesses = vec![guess("pressure-lag")];
     let rivals = rivals.iter().map(|&(id, left, log_ratio)| Trial {
-        further: Vec::new(),
-        guess: guess(id),
-        mean_square: left,
-        before: held(4.0),
         held_out: held(left),
         log_ratio,
+        ..Trial::gaining_nothing(guess(id), left, &held(4.0))
     });
     found.taken = vec![Taken { without: held(4.0), with: held(1.0), rivals: rivals.collect(), is_confirmed: false }];
 }

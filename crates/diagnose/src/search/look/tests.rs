@@ -113,7 +113,7 @@ fn trial(id: &str, log_ratio: f64) -> Trial {
     let shape = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
     let guess = CandidateEffect { effect, shape, sign: Sign::Any, beginning: Beginning::Fresh };
     let held_out = HeldOut { blocks: vec![1.0], counts: vec![1.0], floor_square: 0.0 };
-    Trial { guess, further: Vec::new(), mean_square: 1.0, before: held_out.clone(), held_out, log_ratio }
+    Trial { log_ratio, ..Trial::gaining_nothing(guess, 1.0, &held_out) }
 }
 
 #[test]

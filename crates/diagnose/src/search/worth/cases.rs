@@ -19,14 +19,7 @@ fn is_worth(id: &str, (before, after): (f64, f64), log_ratio: f64, whole: Option
         sign: Sign::Any,
         beginning: Beginning::Fresh,
     };
-    let trial = Trial {
-        further: Vec::new(),
-        guess,
-        mean_square: after,
-        before: held(before),
-        held_out: held(after),
-        log_ratio,
-    };
+    let trial = Trial { held_out: held(after), log_ratio, ..Trial::gaining_nothing(guess, after, &held(before)) };
     worth(&trial, whole.is_some(), &held(whole.unwrap_or(before)), 0.1, limits)
 }
 

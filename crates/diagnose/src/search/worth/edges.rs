@@ -16,14 +16,7 @@ fn first(id: &str, (before, after): (f64, f64), log_ratio: f64, floor_square: f6
     let effect = effect(id).expect("an id");
     let shape = effect.shape().iter().map(|parameter| parameter.grid[0]).collect();
     let guess = CandidateEffect { effect, shape, sign: Sign::Any, beginning: Beginning::Fresh };
-    let trial = Trial {
-        further: Vec::new(),
-        guess,
-        mean_square: after,
-        before: held(before),
-        held_out: held(after),
-        log_ratio,
-    };
+    let trial = Trial { held_out: held(after), log_ratio, ..Trial::gaining_nothing(guess, after, &held(before)) };
     worth(&trial, false, &held(before), floor_square, limits)
 }
 
